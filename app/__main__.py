@@ -15,7 +15,7 @@ def begin() -> int:
     """Be what the arguments say, and give the exit code."""
     if getattr(sys, "frozen", False):
         begin_frozen()
-    from app.cli.main import main
+    from app.cli.main import main  # a child is none of it
 
     return main()
 
@@ -23,9 +23,9 @@ def begin() -> int:
 def begin_frozen() -> None:
     """Do a child's work and end, if this process was started for it; else return at once."""
     _keep_own_libraries()
-    from multiprocessing import freeze_support
+    from multiprocessing import freeze_support  # for a frozen program only
 
-    from devices.files import child
+    from devices.files import child  # as above
 
     freeze_support()
     if sys.argv[1:2] == [child.WORD]:
@@ -34,11 +34,7 @@ def begin_frozen() -> None:
 
 
 def _keep_own_libraries() -> None:
-    """Leave the system's programs that we start (players, the viewer, the desktop's) their own libraries.
-
-    What started us put ours before the system's for all processes to come; this one has looked there already. Ours get
-    them again, when they are asked to begin as the first one did.
-    """
+    """Restore the system's library path for the programs this one starts; it has loaded its own by now."""
     before = os.environ.pop(LIBRARIES_BEFORE, None)
     os.environ.pop(LIBRARIES, None)
     if before:

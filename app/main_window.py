@@ -18,22 +18,22 @@ from PySide6.QtGui import (
     QDropEvent,
     QGuiApplication,
     QKeySequence,
-    QPainter,
-    QPaintEvent,
     QResizeEvent,
     QShortcut,
     QWindow,
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
+from app.help.help_topics import Topic
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
 from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
-from app.system.logs import log_qt_messages
+from app.system.qt_messages import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, grow, load_fonts, set_theme
+from app.theme.ground import Ground, set_ground
 from app.theme.theme import Theme
 from app.widgets.accessible_role import show_roles
 from app.widgets.focus_ring import FocusRing
@@ -184,8 +184,7 @@ class MainWindow(QWidget):
         self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Receive what the user does, from the window of the desktop: of the application's every event, a hundred times
-        as many would be received."""
+        """Filter user events of the desktop's window only; the application has a hundred times as many."""
         if event.type() in ACTIVITY:
             self.idle.note_activity()
         return False
@@ -263,8 +262,7 @@ class MainWindow(QWidget):
 
     def _show_help(self, topic: str) -> None:
         """Open the manual at a topic; Back leads to where it was opened, and what is recorded there goes on."""
-        from app.help.help_page import HelpPage
-        from app.help.help_topics import Topic
+        from app.help.help_page import HelpPage  # most never open it
 
         if self._help is None:
             self._help = HelpPage()
@@ -295,7 +293,7 @@ class MainWindow(QWidget):
 
     def _made_home(self) -> "Home":
         if self._home is None:
-            from app.home.home import Home
+            from app.home.home import Home  # numpy, SciPy, SQLAlchemy
 
             self._home = Home(self.controller, self._settings)
             self.screens.addWidget(self._home)
@@ -337,7 +335,7 @@ class MainWindow(QWidget):
 
     def _made_wizard(self) -> "Wizard":
         if self._wizard is None:
-            from app.wizard.wizard import Wizard
+            from app.wizard.wizard import Wizard  # pyqtgraph, and all steps
 
             self._wizard = Wizard(self.controller, self._settings)
             self.screens.addWidget(self._wizard)
@@ -444,7 +442,8 @@ class MainWindow(QWidget):
         state = self.controller.state
         if self.entry is None or state is None or state.is_demonstration:
             if state is not None:
-                self.controller.forget()  # the demonstration goes on; the library behind it asks for its passphrase
+                # the demonstration goes on; the library behind it asks for its passphrase
+                self.controller.call(lambda holder: holder.forget(), None, None, self)
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
@@ -535,7 +534,7 @@ class _DropFrame(QWidget):
         super().__init__(window)
         self._window = window
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+        set_ground(self, Ground(line="ink", width=DROP_EDGE, radius=0, inset=2))
         self.hide()
 
     def cover(self) -> None:
@@ -543,24 +542,9 @@ class _DropFrame(QWidget):
         self.raise_()
         self.show()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setPen(theme.pen(theme.colours.ink, DROP_EDGE))
-        painter.drawRect(self.rect().adjusted(2, 2, -3, -3))
-
 
 def open_window(argv: list[str], language: str = "") -> int:
-    """Open the application, with the session folder named in `argv` if one is, and stay until it is closed.
-
-    Parameters
-    ----------
-    argv
-        What stood behind the program's name.
-    language
-        What to speak from now on, as "de"; empty: what was chosen last. Another one chosen in the settings opens the
-        window again, for every word of the old one was written in the language before; who is logged in stays so.
-    """
+    """Open the application until closed, again after a change of language; `language` empty: chosen last."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     sys.setswitchinterval(SWITCH_S)
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)

@@ -158,13 +158,7 @@ def undoing(changes: Sequence[NetChange]) -> tuple[NetChange, ...]:
 def changed_between(
     changes: Mapping[str, AlignmentChange | None], start: str, end: str
 ) -> tuple[NetChange, ...] | None:
-    """What leads from one condition to another; None where no chain ties them.
-
-    Parameters
-    ----------
-    changes
-        Of each condition what was changed before it; None: it is where a chain begins.
-    """
+    """Sum the changes from one condition to another; None where no chain connects them."""
     back, forth = _to_root(changes, start), _to_root(changes, end)
     shared = next((one for one in back if one in forth), None)
     if shared is None:

@@ -138,31 +138,19 @@ EXCURSIONS = (
 class Parameter:
     """One quantity of a stride or walk; its column ends in its unit.
 
-    Attributes
-    ----------
-    rests_on
-        What has to be known for it.
-    error
-        Whose error of a difference it has; None: no difference of it is judged.
-    definition
-        For the reader of a file; empty where `core.verdicts.fitting`, a window or an excursion gives it.
-    sign
-        Which direction is positive, where it is not the joint's flexion.
-    most
-        What a goal of it may be at most: wider than any walk, to catch what was typed into the wrong field. None: no
-        goal can be of it. Absolute angles have none, since each visit has a zero of its own.
-    has_index
-        Whether a symmetry index means something: positive figures only.
+    `definition`: for the reader of a file; empty where `core.verdicts.fitting`, a window or an excursion gives it.
+    `most`: what a goal of it may be at most: wider than any walk, to catch what was typed into the wrong field. None:
+    no goal can be of it. Absolute angles have none, since each visit has a zero of its own.
     """
 
     column: str
     file: ParameterFile
-    rests_on: QuantityClass
-    error: QuantityKind | None = None
+    rests_on: QuantityClass  # what has to be known for it
+    error: QuantityKind | None = None  # whose error of a difference it has; None: no difference of it is judged
     definition: str = ""
-    sign: str = ""
+    sign: str = ""  # which direction is positive, where it is not the joint's flexion
     most: float | None = None
-    has_index: bool = False
+    has_index: bool = False  # whether a symmetry index means something: positive figures only
 
 
 _C, _E = QuantityClass, QuantityKind

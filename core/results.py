@@ -117,26 +117,19 @@ class JointAngle:
 class SideGait:
     """One side of one walk. Times are on the recording's clock.
 
-    Attributes
-    ----------
-    events
-        One item per stretch without gaps.
-    parameters
-        Per stride (k,): time and distance, peaks and ranges, named as in strides.csv; angles are radians and named so.
-    cycles
-        Per joint the angle over each stride, (k, 101) radians; NaN rows where it is not known.
-    phase : (n,)
-        Index into `core.gait.phases.PHASES` at each sample of the recording.
-    is_toe_off_biased
-        The side's toe-offs may be early or late, alike in every stride, so its stance and swing are neither to be
-        judged against a band nor compared with another side's: a prosthetic foot rolls on where a heel would rise.
+    `parameters`: per stride (k,): time and distance, peaks and ranges, named as in strides.csv; angles are radians and
+    named so.
+    `cycles`: per joint the angle over each stride, (k, 101) radians; NaN rows where it is not known.
+    `is_toe_off_biased`: the side's toe-offs may be early or late, alike in every stride, so its stance and swing are
+    neither to be judged against a band nor compared with another side's: a prosthetic foot rolls on where a heel would
+    rise.
     """
 
-    events: tuple[FootEvents, ...]
+    events: tuple[FootEvents, ...]  # one item per stretch without gaps
     strides: Strides
     parameters: Mapping[str, FloatArray]
     cycles: Mapping[Joint, FloatArray]
-    phase: IntArray
+    phase: IntArray  # (n,): index into `core.gait.phases.PHASES` at each sample of the recording
     is_toe_off_biased: bool = False
 
 
@@ -144,22 +137,13 @@ class SideGait:
 class AxisHalves:
     """How far a joint's axes are apart as two parts of the data show them, each by itself.
 
-    Attributes
-    ----------
-    apart_rad
-        Between the lines of the axes, of the sensor at which it is more.
-    sd_rad
-        Formal standard deviation of a part's axes, of both parts root mean square.
-    is_free_motion
-        The parts are a free motion and the walks; else both halves of the walks.
-    spread
-        By the name of a stride's parameter, rad: half of what its mean over the walk differs by with the axes of either
-        part, beyond chance.
+    `spread`: by the name of a stride's parameter, rad: half of what its mean over the walk differs by with the axes of
+    either part, beyond chance.
     """
 
-    apart_rad: float
-    sd_rad: float
-    is_free_motion: bool
+    apart_rad: float  # between the lines of the axes, of the sensor at which it is more
+    sd_rad: float  # formal standard deviation of a part's axes, of both parts root mean square
+    is_free_motion: bool  # the parts are a free motion and the walks; else both halves of the walks
     spread: Mapping[str, float]
 
 

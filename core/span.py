@@ -22,18 +22,12 @@ from core.signal.sensors import SensorTracks
 class JointAnalysis:
     """One joint as the same recordings calibrate it, once it is identified.
 
-    Attributes
-    ----------
-    knee
-        Of an ankle, the knee above, where that is identified.
-    lags_s, twists
-        By the name of the recording that the joint moves in.
-    motion_sign
-        As the motion gives it, since the user's word on a knee is none on its ankle.
+    `lags_s`, `twists`: by the name of the recording that the joint moves in.
+    `motion_sign`: as the motion gives it, since the user's word on a knee is none on its ankle.
     """
 
     identified: Identified
-    knee: "JointAnalysis | None" = None
+    knee: "JointAnalysis | None" = None  # of an ankle, the knee above, where that is identified
     lags_s: dict[str, float] = field(default_factory=dict)
     twists: dict[str, Twist] = field(default_factory=dict)
     calibration: JointCalibration = field(init=False)
@@ -48,16 +42,12 @@ class JointAnalysis:
 class SpanAnalysis:
     """One span of validity.
 
-    Attributes
-    ----------
-    bases
-        What calibrates each joint in each recording, by the recording's name; also where nothing could be identified.
-    doubted_sites, drifts_percent
-        Sites whose sensors seem exchanged; how much faster than its leg's a clock runs, by the walk's name and site.
-    joints
-        Those that were identified, knees first, since they help their ankles.
-    slipped_s
-        From when on a side's straps are not to be trusted, by the walk's name, on its clock.
+    `bases`: what calibrates each joint in each recording, by the recording's name; also where nothing could be
+    identified.
+    `doubted_sites`, `drifts_percent`: sites whose sensors seem exchanged; how much faster than its leg's a clock runs,
+    by the walk's name and site.
+    `joints`: those that were identified, knees first, since they help their ankles.
+    `slipped_s`: from when on a side's straps are not to be trusted, by the walk's name, on its clock.
     """
 
     tracks: SensorTracks

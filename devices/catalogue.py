@@ -28,33 +28,19 @@ from devices.stream import Decoder, SensorProtocol
 class Driver:
     """One maker's sensors.
 
-    Attributes
-    ----------
-    key
-        As journals name it.
-    proof
-        Against what it was tried, and against what not.
-    decoder
-        Of the bytes in a journal; None: samples are kept, and need none.
-    protocol
-        A new one as a search uses it; None: settings are needed before one can be made.
-    bauds
-        Of its serial ports, the likeliest first.
-    hint
-        What a port's description gives where one of these is plugged in, so that it is spoken to although it is
-        silent.
-    knock
-        Harmless to anything else; what is silent until it is asked to send answers with `knocked`.
+    `protocol`: a new one as a search uses it; None: settings are needed before one can be made.
+    `hint`: what a port's description gives where one of these is plugged in, so that it is spoken to although it is
+    silent.
     """
 
-    key: str
+    key: str  # as journals name it
     name: str
-    proof: str
-    decoder: Callable[[], StreamDecoder] | None
+    proof: str  # against what it was tried, and against what not
+    decoder: Callable[[], StreamDecoder] | None  # of the bytes in a journal; None: samples are kept, and need none
     protocol: Callable[[], SensorProtocol] | None = None
-    bauds: tuple[int, ...] = ()
+    bauds: tuple[int, ...] = ()  # of its serial ports, the likeliest first
     hint: str = ""
-    knock: bytes = b""
+    knock: bytes = b""  # harmless to anything else; what is silent until it is asked to send answers with `knocked`
     knocked: bytes = b""
 
 

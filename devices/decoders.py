@@ -23,7 +23,7 @@ BYTE_DRIVERS = (
 
 
 def _new_decoder(driver: str) -> "StreamDecoder":
-    from devices.catalogue import DRIVERS
+    from devices.catalogue import DRIVERS  # numpy, and every driver
 
     decoder = next(one for one in DRIVERS if one.key == driver).decoder
     assert decoder is not None  # BYTE_DRIVERS are those that have one

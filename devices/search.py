@@ -86,20 +86,7 @@ def search(
     columns: Mapping[str, Columns] = NO_COLUMNS,
     radio: Radio | None = None,
 ) -> SearchResult:
-    """Listen to all ports at once and to the network; takes a second or two, or four. Each sensor is named once.
-
-    Nothing is sent but to ports. Who wants streams asks for them: `search_streams`.
-
-    Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open, but for
-    those that somebody bound or that are a sensor's by their name.
-
-    Parameters
-    ----------
-    columns
-        What the columns of lines of numbers are, by the `key` of the port that sends them.
-    radio
-        What to listen to for Bluetooth LE; None: nothing.
-    """
+    """Listen to ports and the network for 1 to 4 s, each sensor named once; nothing is sent but to ports."""
     looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
     received: list[FoundSensor | Passed | LinesAt] = []
     works = [
@@ -259,13 +246,7 @@ def _announced(at_port: int) -> list[FoundSensor]:
 
 
 def search_streams(address: str) -> SearchResult:
-    """Ask for the sensors among the streams of Lab Streaming Layer; see `devices.drivers.lsl.ask_in`.
-
-    Raises
-    ------
-    SourceRefusedError
-        It is not installed, or was asked elsewhere before.
-    """
+    """Ask for sensors among the streams (`devices.drivers.lsl.ask_in`); raises SourceRefusedError."""
     found: list[FoundSensor] = []
     passed: list[Passed] = []
     for stream in find_streams(address):

@@ -35,27 +35,13 @@ class SourceInfo:
 
 @dataclass(frozen=True, slots=True)
 class SensorCounts:
-    """What became of one sensor's samples.
+    """What became of one sensor's samples."""
 
-    Attributes
-    ----------
-    received
-        Samples that are there, each counted once.
-    lost
-        Missing by the device's counter, or by the clock where there is none.
-    damaged
-        Frames that failed their check, samples without a time.
-    doubled
-        Samples that came again; the first was kept.
-    late
-        Samples that came after a younger one; put back in their place.
-    """
-
-    received: int = 0
-    lost: int = 0
-    damaged: int = 0
-    doubled: int = 0
-    late: int = 0
+    received: int = 0  # samples that are there, each counted once
+    lost: int = 0  # missing by the device's counter, or by the clock where there is none
+    damaged: int = 0  # frames that failed their check, samples without a time
+    doubled: int = 0  # samples that came again; the first was kept
+    late: int = 0  # samples that came after a younger one; put back in their place
 
     def __add__(self, other: "SensorCounts") -> "SensorCounts":
         return SensorCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
@@ -65,25 +51,15 @@ class SensorCounts:
 class SharedClock:
     """A sensor's samples by a clock that it shares with others; what puts them right together: `clocks.shared_clock`.
 
-    Attributes
-    ----------
-    name
-        Of the clock; the same for all that share it.
-    device_s : (n,)
-        When each sample of the block was taken, by that clock.
-    arrived_s : (n,)
-        When it arrived, in seconds since the journal was opened; of what was fetched from a memory (0,).
-    turn_s
-        After how long the clock begins again; 0: never.
-    ahead_s
-        Of what was fetched from a memory: between what bounds the journal's seconds are ahead of this clock's, by when
-        its beginning and its end were ordered.
+    `arrived_s`: (n,): when it arrived, in seconds since the journal was opened; of what was fetched from a memory (0,).
+    `ahead_s`: of what was fetched from a memory: between what bounds the journal's seconds are ahead of this clock's,
+    by when its beginning and its end were ordered.
     """
 
-    name: str
-    device_s: FloatArray
+    name: str  # of the clock; the same for all that share it
+    device_s: FloatArray  # (n,): when each sample of the block was taken, by that clock
     arrived_s: FloatArray
-    turn_s: float = 0.0
+    turn_s: float = 0.0  # after how long the clock begins again; 0: never
     ahead_s: tuple[float, float] | None = None
 
 

@@ -110,24 +110,7 @@ def decoded(
     clock: tuple[str, float] | None = None,
     again: Collection[int] = (),
 ) -> DecodedSensor:
-    """Put what was received of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
-
-    Parameters
-    ----------
-    host_s : (n,)
-        When each row arrived, by the host's clock.
-    step_s
-        Between two samples, where it is known.
-    clock
-        The name of the clock that it shares with other sensors, and after how many seconds it begins again.
-    again
-        See `put_in_order`.
-
-    Returns
-    -------
-    DecodedSensor
-        SI units, sensor axes, stamps by the host's clock.
-    """
+    """Order what was received of one sensor (rows arrived at `host_s`); SI, sensor axes, host stamps."""
     rows = np.array(received.rows, dtype=float).reshape(-1, COLUMNS)
     arrived_s = np.array(host_s, dtype=float)
     ordered = put_in_order(rows[:, 0], arrived_s, step_s, begins, again)
@@ -231,25 +214,17 @@ class ByteSource:
 
     def __init__(self, protocol: SensorProtocol, channel: Channel, now_ns: Callable[[], int] = host_time_ns) -> None:
         self._protocol, self._channel, self._now_ns = protocol, _Noting(channel), now_ns
-        self._info = SourceInfo(protocol.driver, protocol.version)
+        self.info = SourceInfo(protocol.driver, protocol.version)
         self._details = SensorDetails()
         self._framer: Framer | None = None
         self._clock = LiveClock()
-        self._damaged = 0
+        self.damaged = 0
+        """Messages that could not be understood since the source was made."""
         self._is_open = False
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     @property
     def sent(self) -> Sequence[bytes]:
         return tuple(self._channel.sent)
-
-    @property
-    def damaged(self) -> int:
-        """Messages that could not be understood since the source was made."""
-        return self._damaged
 
     def open(self) -> None:
         self._channel.open()
@@ -258,9 +233,9 @@ class ByteSource:
         except BaseException:
             self._channel.close()
             raise
-        if self._info.sensors:  # it keeps its name, whatever it reports about itself after it was lost
-            info = replace(info, sensors=self._info.sensors)
-        self._info, self._details = info, details
+        if self.info.sensors:  # it keeps its name, whatever it reports about itself after it was lost
+            info = replace(info, sensors=self.info.sensors)
+        self.info, self._details = info, details
         self._framer, self._is_open = self._protocol.framer(info), True
         self._clock.begin()
 
@@ -273,25 +248,25 @@ class ByteSource:
         framer = self._framer
         framer.feed(data, now_s)
         received, framer.received = framer.received, Received(battery=framer.received.battery)
-        self._damaged += received.damaged
+        self.damaged += received.damaged
         if received.battery is not None and received.battery != self._details.battery:
             self._details = replace(self._details, battery=received.battery)
         if not received.rows:
             return ()
         rows = np.array(received.rows, dtype=float)
         stamps_s = self._clock.stamp(rows[:, 0], now_s)
-        return (ImuBlock(self._info.sensors[0], stamps_s, rows[:, 1:4], rows[:, 4:7]),)
+        return (ImuBlock(self.info.sensors[0], stamps_s, rows[:, 1:4], rows[:, 4:7]),)
 
     def close(self) -> None:
         self._is_open = False
         self._channel.close()
 
     def details(self) -> Mapping[str, SensorDetails]:
-        return dict.fromkeys(self._info.sensors, self._details)
+        return dict.fromkeys(self.info.sensors, self._details)
 
     def identify(self, sensor: str) -> bool:
         command = self._protocol.identifying()
-        if not command or not self._is_open or sensor not in self._info.sensors:
+        if not command or not self._is_open or sensor not in self.info.sensors:
             return False
         with suppress(Exception):  # what is lost is noticed by whoever reads
             self._channel.write(command)
@@ -303,35 +278,13 @@ class ByteSource:
 
 
 def ask(channel: Channel, framer: Framer, command: bytes, is_answer: Callable[[bytes], bool], within_s: float) -> bytes:
-    """Send a command and wait for its answer; empty where none comes. What is received meanwhile stays with the framer.
-
-    Parameters
-    ----------
-    within_s
-        How long to wait.
-
-    Returns
-    -------
-    bytes
-        The answer, or none.
-    """
+    """Send a command and await its answer, empty on timeout; other bytes stay with the framer."""
     channel.write(command)
     return listen(channel, framer, lambda received: next(filter(is_answer, received.replies), b""), within_s)
 
 
 def listen(channel: Channel, framer: Framer, found: Callable[[Received], bytes], within_s: float) -> bytes:
-    """Read until `found` finds something in what was received, for so long at most.
-
-    Parameters
-    ----------
-    within_s
-        How long at most.
-
-    Returns
-    -------
-    bytes
-        What `found` gave, or none.
-    """
+    """Read until `found` finds something in what was received, empty on timeout."""
     until_s = time.monotonic() + within_s
     while time.monotonic() < until_s:
         framer.feed(channel.read(), time.monotonic())

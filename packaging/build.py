@@ -122,13 +122,7 @@ def megabytes(place: Path) -> int:
 
 
 def run(command: Sequence[str | Path], environment: Mapping[str, str] | None = None) -> None:
-    """Run a step to its end; its output is shown.
-
-    Raises
-    ------
-    SystemExit
-        It failed.
-    """
+    """Run a step to its end with its output shown; raises SystemExit where it fails."""
     if subprocess.call([str(word) for word in command], env={**os.environ, **(environment or {})}) != 0:
         sys.exit(f"{Path(command[0]).name} failed on {platform.platform()}. Nothing was packed.")
 

@@ -52,13 +52,7 @@ class Part:
 
 
 def sources(work: Path) -> Iterator[Path]:
-    """Give where everything in the folder came from.
-
-    Parameters
-    ----------
-    work
-        PyInstaller's own folder, with a list of files (COLLECT) and one of compiled modules (PYZ) for each program.
-    """
+    """Give where everything in the folder came from, by PyInstaller's lists COLLECT and PYZ."""
     for file in sorted(work.glob("*.toc")):
         if not file.name.startswith(("COLLECT", "PYZ")):
             continue
@@ -80,20 +74,7 @@ def owners() -> dict[str, str]:
 
 
 def sorted_out(files: Iterable[Path], owned: dict[str, str], stdlib: Path) -> tuple[set[str], set[Path]]:
-    """Distinguish distributions from libraries of the system.
-
-    Returns
-    -------
-    names, set of str
-        Distributions that a file belongs to.
-    system, set of Path
-        What belongs to none and is neither ours nor Python's own.
-
-    Raises
-    ------
-    PartsError
-        A file lies among the distributions and belongs to none.
-    """
+    """Sort files into distributions and system paths; raises PartsError for a file of none among the former."""
     names, system = set(), set()
     made_here = (ROOT / "build", stdlib.resolve(), ROOT)
     packages = Path(sysconfig.get_path("purelib")).resolve()
@@ -109,13 +90,7 @@ def sorted_out(files: Iterable[Path], owned: dict[str, str], stdlib: Path) -> tu
 
 
 def part_of(name: str) -> Part:
-    """Read a distribution's metadata and the texts of its licence.
-
-    Raises
-    ------
-    PartsError
-        There is no text of its licence, neither with it nor among ours.
-    """
+    """Read a distribution's metadata and licence texts; raises PartsError where there is no text."""
     one = metadata.distribution(name)
     reported = one.metadata
 
@@ -153,13 +128,7 @@ def part_of_python() -> Part:
 
 
 def system_parts(files: Iterable[Path]) -> Iterator[Part]:
-    """Give the packages of Debian that these libraries come from.
-
-    Raises
-    ------
-    PartsError
-        One comes from nowhere that is known, as on another system: then say here how it is asked.
-    """
+    """Give the Debian packages of these libraries; raises PartsError where one is unknown."""
     for file in sorted(files):
         asked = [str(file), str(file).removeprefix("/usr")]
         found = next((answer for path in asked if (answer := _reported_by("dpkg-query", "--search", path))), "")
@@ -188,13 +157,7 @@ def write_licences(parts: Iterable[Part], folder: Path) -> None:
 
 
 def bill_of_materials(whole: dict[str, Any], parts: Iterable[Part]) -> dict[str, Any]:
-    """Leave in an environment's bill what is inside, and add what is no distribution.
-
-    Parameters
-    ----------
-    whole
-        CycloneDX as JSON.
-    """
+    """Leave in an environment's CycloneDX bill what is inside, and add what is no distribution."""
     inside = {_key(part.name): part for part in parts}
     components = [one for one in whole.get("components", ()) if _key(one["name"]) in inside]
     listed = {_key(one["name"]) for one in components}
@@ -230,13 +193,7 @@ def environment_bill() -> dict[str, Any]:
 
 
 def check_bill(bill: str) -> None:
-    """Hold a bill to the schema.
-
-    Raises
-    ------
-    PartsError
-        It does not follow it.
-    """
+    """Hold a bill to the schema; raises PartsError where it does not follow it."""
     from cyclonedx.schema import SchemaVersion
     from cyclonedx.validation.json import JsonStrictValidator
 

@@ -51,15 +51,7 @@ class SetUpError(Exception):
 
 
 def prepare(*, is_screen_needed: bool) -> Path:
-    """Make everything ready and return the environment's Python.
-
-    System libraries are installed where this user may; where not, only a window or the tests cannot do without them.
-
-    Raises
-    ------
-    SetUpError
-        In sentences for the user.
-    """
+    """Prepare all and give the environment's Python; raises SetUpError in sentences for the user."""
     try:
         missing = missing_libraries()
         if not is_current() and not can_make_environments():

@@ -16,6 +16,7 @@ from hypothesis import settings
 from PySide6.QtCore import QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
+from tests.simulated import STORE
 from tests.wrappers import Wrappers
 
 # a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
@@ -26,9 +27,15 @@ settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 REQUIREMENTS = Path(__file__).parents[1] / "packaging" / "safety" / "requirements.toml"
 COLLECTIONS = 60  # of young objects, until the old ones are looked through: that takes a while
-_BEGUN: set[str] = set()
+_BEGUN: set[Path] = set()
 _WRAPPERS = Wrappers()
 _WRAPPERS.watch()
+gc.disable()  # for good: what is imported is there to stay, and the rest is collected between tests
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if cache := getattr(config, "cache", None):
+        STORE.open(cache.mkdir("simulated"))
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks
@@ -67,17 +74,19 @@ def _no_data_of_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
         yield
 
 
-@pytest.fixture(autouse=True)
-def _garbage_on_one_thread(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Collect between tests only, as the application does between frames: what a thread freed of Qt would crash.
-
-    What is there when a module begins is there to stay, and not looked through again: that would take a minute in all.
-    """
-    gc.disable()
-    if request.module.__name__ not in _BEGUN:
-        _BEGUN.add(request.module.__name__)
+@pytest.hookimpl(tryfirst=True)  # before the module's own fixtures, which are let go of with it
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Keep what is there when a module begins, and do not look through it again: that would take a minute in all."""
+    if item.path not in _BEGUN:
+        _BEGUN.add(item.path)
         gc.collect()
         gc.freeze()
+
+
+@pytest.fixture(autouse=True)
+def _garbage_on_one_thread() -> Iterator[None]:
+    """Collect between tests only, as the application does between frames: what a thread freed of Qt would crash."""
+    gc.disable()
     yield
     gc.collect() if gc.get_count()[2] > COLLECTIONS else gc.collect(1)
 

@@ -14,6 +14,9 @@ from pathlib import Path
 
 import pytest
 
+import core
+import devices
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("app", "core", "devices")
 FOLDERS = (*PACKAGES, "resources", "packaging", "tests", ".ci", ".github")
@@ -48,6 +51,14 @@ def nodes(file: Path) -> tuple[ast.AST, ...]:
     return tuple(ast.walk(parse(file)))
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _let_go_of_files() -> Iterator[None]:
+    """Millions of parts: looking through them for garbage before the next module takes seconds."""
+    yield
+    parse.cache_clear()
+    nodes.cache_clear()
+
+
 def place(file: Path, line: int) -> str:
     return f"{file.relative_to(ROOT).as_posix()}:{line}"
 
@@ -71,6 +82,29 @@ def test_a_library_of_one_purpose_is_imported_by_one_file(library: str, only: st
         if name.split(".")[0] == library and file != ROOT / only
     ]
     assert found == []
+
+
+MOST_LATE_IMPORTS = (
+    59  # each costs a reader a second place to look; what is left buys a start, or does without an extra
+)
+
+
+def late_imports(node: ast.AST, is_in_function: bool = False) -> Iterator[ast.stmt]:
+    """The imports inside functions; what a type checker alone reads is none."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+            continue
+        if is_in_function and isinstance(child, ast.Import | ast.ImportFrom):
+            yield child
+        is_function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
+        yield from late_imports(child, is_in_function or is_function)
+
+
+def test_imports_inside_functions_are_few_and_each_states_what_it_buys() -> None:
+    found = [(file, one.lineno) for file in python_files(*PACKAGES) for one in late_imports(parse(file))]
+    assert len(found) <= MOST_LATE_IMPORTS
+    lines = {file: file.read_text(encoding="utf-8").splitlines() for file, _ in found}
+    assert [place(file, line) for file, line in found if "  # " not in lines[file][line - 1]] == []
 
 
 def test_the_opening_of_a_package_states_what_belongs_there_and_does_nothing() -> None:
@@ -273,7 +307,7 @@ NETWORKS = re.compile(
 CALLERS = {
     *("bluetooth.py", "channels.py", "dot.py", "lsl.py", "networks.py", "search.py", "transports.py"),  # sensors
     *("engine.py", "journal_store.py", "logins.py"),  # the clinic's server and shared place
-    *("executors.py", "task.py"),  # a batch's workers, by --dask
+    *("cluster.py", "task.py"),  # a batch's workers, by --dask
 }
 
 
@@ -320,12 +354,26 @@ def test_a_docstring_that_lacks_a_shape_or_what_is_returned_is_found() -> None:
     ]
 
 
-def test_a_public_function_of_core_and_devices_states_what_its_numbers_are() -> None:
+def test_a_public_function_states_what_its_numbers_are() -> None:
+    """Public is what `__all__` names, and the paper's method; other functions have a line or two."""
+    public = {*core.__all__, *devices.__all__}
     assert [
         f"{place(file, node.lineno)} {node.name}: {', '.join(lacking)}"
         for file in python_files("core", "devices")
         for node in parse(file).body
-        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_") and (lacking := undocumented(node))
+        if isinstance(node, ast.FunctionDef)
+        and not node.name.startswith("_")
+        and (node.name in public or "published" in file.parts)
+        and (lacking := undocumented(node))
+    ] == []
+
+
+def test_a_function_of_core_and_devices_states_what_it_does() -> None:
+    assert [
+        f"{place(file, node.lineno)} {node.name}"
+        for file in python_files("core", "devices")
+        for node in parse(file).body
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_") and ast.get_docstring(node) is None
     ] == []
 
 

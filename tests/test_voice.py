@@ -3,7 +3,8 @@
 import ast
 import inspect
 import re
-from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,7 @@ def banned_in_text(text: str) -> set[str]:
     return set(re.findall(r"[a-z]+", CODE.sub(" ", text).lower())) & BANNED
 
 
+@cache
 def banned_in_name(name: str) -> set[str]:
     return {word.lower() for word in WORD.findall(name)} & BANNED if name not in ALLOWED_NAMES else set()
 
@@ -38,42 +40,56 @@ def python_files() -> list[Path]:
     return sorted(file for folder in folders for file in (ROOT / folder).rglob("*.py"))
 
 
-def names_of(tree: ast.AST) -> Iterator[tuple[str, int]]:
+@dataclass(slots=True)
+class Words:
+    """What a file calls things and writes out, with the lines."""
+
+    statement: str
+    names: list[tuple[str, int]] = field(default_factory=list)
+    docstrings: list[tuple[str, int]] = field(default_factory=list)
+    texts: list[tuple[str, int]] = field(default_factory=list)  # help of the command line, definitions, refusals
+
+
+@cache  # walking through a file takes longer than reading it
+def words_of(file: Path) -> Words:
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    words = Words(ast.get_docstring(tree) or "")
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name) | ast.Attribute(attr=name):
-                yield name, node.lineno
+                words.names.append((name, node.lineno))
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                yield name, node.lineno
+                words.names.append((name, node.lineno))
             case ast.arg(arg=name):
-                yield name, node.lineno
+                words.names.append((name, node.lineno))
             case ast.keyword(arg=str(name)):
-                yield name, node.lineno
-
-
-def docstrings_of(tree: ast.AST) -> Iterator[tuple[str, int]]:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            text = ast.get_docstring(node)
-            if text:
-                yield text, node.body[0].lineno
+                words.names.append((name, node.lineno))
+            case ast.Constant(value=str(text)) if " " in text:
+                words.texts.append((text, node.lineno))
+        match node:
+            case ast.Module() | ast.ClassDef() | ast.FunctionDef() | ast.AsyncFunctionDef():
+                if stated := ast.get_docstring(node):
+                    words.docstrings.append((stated, node.body[0].lineno))
+    docstrings = {text for text, _ in words.docstrings}
+    words.texts = [(text, line) for text, line in words.texts if inspect.cleandoc(text) not in docstrings]
+    return words
 
 
 @pytest.mark.parametrize("folder", ["app", "core", "devices", "packaging", "tests"])
 def test_names_and_docstrings_use_the_words_of_the_field(folder: str) -> None:
     found = []
     for file in (file for file in python_files() if file.is_relative_to(ROOT / folder)):
-        tree, place = ast.parse(file.read_text(encoding="utf-8")), file.relative_to(ROOT).as_posix()
-        found += [f"{place}:{line} {name}" for name, line in names_of(tree) if banned_in_name(name)]
+        of_file, place = words_of(file), file.relative_to(ROOT).as_posix()
+        found += [f"{place}:{line} {name}" for name, line in of_file.names if banned_in_name(name)]
         found += [
-            f"{place}:{line} {sorted(words)}" for text, line in docstrings_of(tree) if (words := banned_in_text(text))
+            f"{place}:{line} {sorted(words)}" for text, line in of_file.docstrings if (words := banned_in_text(text))
         ]
     assert found == []
 
 
 def test_a_module_opens_with_a_statement() -> None:
-    opened = {file: ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "" for file in python_files()}
-    assert [str(file.relative_to(ROOT)) for file, text in opened.items() if "?" in text.split("\n\n")[0]] == []
+    opened = {file: words_of(file).statement.split("\n\n")[0] for file in python_files()}
+    assert [str(file.relative_to(ROOT)) for file, text in opened.items() if "?" in text] == []
 
 
 def test_sentences_use_the_words_of_the_clinic() -> None:
@@ -85,21 +101,12 @@ def test_sentences_use_the_words_of_the_clinic() -> None:
     assert [text for text in texts if text.endswith("!") or re.search(r"\bplease\b", text, re.IGNORECASE)] == []
 
 
-def texts_of(tree: ast.AST) -> Iterator[tuple[str, int]]:
-    """What is written out as it is: the command line's help, definitions of columns, refusals."""
-    docstrings = {text for text, _ in docstrings_of(tree)}
-    for node in ast.walk(tree):
-        match node:
-            case ast.Constant(value=str(text)) if " " in text and inspect.cleandoc(text) not in docstrings:
-                yield text, node.lineno
-
-
 @pytest.mark.parametrize("folder", ["app", "core", "devices", "packaging"])
 def test_what_is_printed_uses_the_words_of_the_field(folder: str) -> None:
     found = []
     for file in sorted((ROOT / folder).rglob("*.py")):
-        tree, place = ast.parse(file.read_text(encoding="utf-8")), file.relative_to(ROOT).as_posix()
-        for text, line in texts_of(tree):
+        place = file.relative_to(ROOT).as_posix()
+        for text, line in words_of(file).texts:
             if words := banned_in_text(ALLOWED_TEXTS.sub("", text)):
                 found.append(f"{place}:{line} {sorted(words)} {text}")
     assert found == []

@@ -16,6 +16,7 @@ import numpy as np
 from app.acquisition.heartbeat import Heartbeat, ProcessStall
 from app.acquisition.preview import LiveEstimator, Preview
 from app.acquisition.reader import Reader
+from app.acquisition.sensor_memory import MemoryRecording
 from app.acquisition.sensor_stream import SensorStatus
 from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.alignment import NetChange
@@ -26,7 +27,6 @@ from devices.live import LiveSource, SourceRefusedError
 from devices.simulation.prosthesis_user import ProsthesisUser
 
 if TYPE_CHECKING:
-    from app.acquisition.sensor_memory import MemoryRecording
     from devices.dot.source import DotGroup
 
 __all__ = ["Acquisition", "LiveEstimator", "SensorStatus"]
@@ -59,13 +59,7 @@ class Acquisition:
         self._stopping = threading.Lock()
 
     def start(self) -> None:
-        """Open all sources and read them from now on.
-
-        Raises
-        ------
-        SourceRefusedError
-            One of them does not open, or two have a sensor of the same name; all are closed again.
-        """
+        """Open and read all sources; raises SourceRefusedError, all closed, where one refuses or names clash."""
         self._begin_ns = self.now_ns()
         try:
             for reader in self._readers:
@@ -144,16 +138,8 @@ class Acquisition:
         """Whether the sensors are ready to record in their memories, and send nothing."""
         return self.dots is not None and self.dots.is_recording_use
 
-    def record_in_memory(self, started_s: int) -> "MemoryRecording":
-        """Let the sensors record in their memories, from now on until it is ended; `started_s` (UTC) names it.
-
-        Raises
-        ------
-        SourceRefusedError
-            One of them does not begin, so that none does.
-        """
-        from app.acquisition.sensor_memory import MemoryRecording  # with bleak's part of the sensors
-
+    def record_in_memory(self, started_s: int) -> MemoryRecording:
+        """Record in memory, named by `started_s` (UTC), until ended; raises SourceRefusedError, all or none."""
         assert self.dots is not None  # checked by `is_in_memory`
         recording = MemoryRecording(self.dots)
         recording.begin(started_s)
@@ -161,13 +147,7 @@ class Acquisition:
         return recording
 
     def record(self, writer: JournalWriter) -> None:
-        """Keep what all sensors measured since the journal was opened, up to `stop_recording`.
-
-        Raises
-        ------
-        RuntimeError
-            Something is being recorded already.
-        """
+        """Keep what all sensors measure since the journal was opened, until `stop_recording`."""
         if self._writer:
             raise RuntimeError("a recording is being made already")
         self._writer = writer
@@ -175,13 +155,7 @@ class Acquisition:
             reader.record(writer)
 
     def stop_recording(self) -> JournalSummary:
-        """End the recording with what was measured until now. Waits for sources, half a second at most, and disk.
-
-        Raises
-        ------
-        RuntimeError
-            None is being made, or `close` has ended it.
-        """
+        """End the recording with what was measured until now; waits for sources (0.5 s at most) and disk."""
         with self._stopping:
             writer = self._writer
             if writer is None:
@@ -198,10 +172,7 @@ class Acquisition:
         self._preview.set_estimator(estimator)
 
     def ask(self, kind: RecordingKind | None) -> float | None:
-        """Ask simulated patients to do what is recorded next; None: nothing.
-
-        Answers how long that will be done, s, as by a replay, whose recording ends; None: nobody knows.
-        """
+        """Ask simulated patients for this movement; give its duration in s, None where no source knows it."""
         reported = [reader.source.ask(kind) for reader in self._readers]
         return max((length_s for length_s in reported if length_s is not None), default=None)
 

@@ -22,12 +22,8 @@ class ChainSearch:
     """Chains of the sensors that are received, from the last KEPT_S; who was lifted first is remembered from the start
     on.
 
-    Attributes
-    ----------
-    chains
-        What the last look found; None before, and where it found nothing.
-    is_sure
-        Whether the last looks were certain of the same legs.
+    `chains`: what the last look found; None before, and where it found nothing.
+    `is_sure`: whether the last looks were certain of the same legs.
     """
 
     def __init__(

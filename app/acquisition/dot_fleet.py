@@ -88,15 +88,7 @@ class DotFleet:
                 return False
 
     def stop_recordings(self, numbers: Sequence[int]) -> None:
-        """End whatever these record in their memories; what they hold stays there.
-
-        Raises
-        ------
-        SourceLostError
-            One is out of reach.
-        SourceRefusedError
-            One goes on.
-        """
+        """End these memory recordings, keeping the files; raises SourceLostError or SourceRefusedError."""
         with self._talking:
             for number in numbers:
                 self.radio.run(_left(self.dots[number].sensor, stop))

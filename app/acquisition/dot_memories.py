@@ -51,15 +51,7 @@ class DotMemories:
         self._group = group
 
     def held(self, show_message: Reported, tick: Tick | None = None) -> tuple[HeldRecording, ...]:
-        """All that they hold, oldest first.
-
-        Raises
-        ------
-        SourceLostError
-            One is out of reach.
-        SourceRefusedError
-            One records, or does not report what it holds.
-        """
+        """Give all files held, oldest first; raises SourceLostError, or SourceRefusedError while recording."""
         group = self._group
         group.fall_silent(tick)
         files: dict[int, dict[str, RecordedFile]] = {}
@@ -79,14 +71,8 @@ class DotMemories:
     def erase(
         self, gone: Mapping[str, Collection[int]], utc_s: int, show_message: Reported, tick: Tick | None = None
     ) -> None:
-        """Erase all memories. `gone`: by sensor when those files were begun that are kept, or that the user lets go.
-
-        Raises
-        ------
-        DotRefusedError
-            One holds more than that; those before it are erased.
-        SourceLostError
-            One is out of reach.
+        """Erase all memories; `gone`: start times (UTC, s) by sensor of the files that may go.
+        Raises SourceLostError, or DotRefusedError if a memory holds others (those before it are erased).
         """
         for sensor in self._group.sensors:
             show_message(sensor.name)

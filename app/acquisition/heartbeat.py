@@ -23,21 +23,16 @@ REPORTED_S = 1.0  # so long a standstill is reported: it may cost samples
 class ProcessStall:
     """One standstill.
 
-    Attributes
-    ----------
-    began_s, ended_s
-        On the acquisition's clock.
-    lasted_s, asleep_s
-        On the machine's; how much of it the machine slept, as far as its clocks distinguish the two.
-    lost_before
-        How many samples each sensor lacked when it began.
+    `began_s`, `ended_s`: on the acquisition's clock.
+    `lasted_s`, `asleep_s`: on the machine's; how much of it the machine slept, as far as its clocks distinguish the
+    two.
     """
 
     began_s: float
     ended_s: float
     lasted_s: float
     asleep_s: float
-    lost_before: Mapping[str, int] = field(default_factory=dict)
+    lost_before: Mapping[str, int] = field(default_factory=dict)  # how many samples each sensor lacked when it began
 
     @property
     def was_asleep(self) -> bool:

@@ -16,16 +16,7 @@ def live_sensors(
     status: Mapping[str, SensorStatus],
     not_reported: RateKind = RateKind.INSTANTANEOUS,
 ) -> dict[str, LiveSensor]:
-    """Rate, bias and kind of rate by the sensor's name; those that report no rate and are not received are left out.
-
-    Parameters
-    ----------
-    rests
-        Of the sensors that have lain still; the others are taken as without bias, which the orientation filter then
-        finds by itself as far as it can.
-    not_reported
-        What the rates stand for where the sensor does not name it: what an analysis of the free motion has found.
-    """
+    """Give rate, bias (0 without rest) and rate kind by sensor, omitting those with no rate known or received."""
     found = {}
     for name in sensors:
         one = status.get(name)

@@ -47,27 +47,15 @@ class OrderedFile:
 
 @dataclass(frozen=True, slots=True)
 class RequiredFile:
-    """A file of one sensor's memory.
-
-    Attributes
-    ----------
-    file
-        None: the one that was begun at `started_utc_s`, which is looked for first.
-    clock
-        The name of the clock that it shares with others; empty: its own.
-    orders
-        None: nobody knows them.
-    about
-        How many samples it has, about; 0: by its size.
-    """
+    """A file of one sensor's memory."""
 
     sensor: DotSensor
     started_utc_s: int
-    file: RecordedFile | None = None
+    file: RecordedFile | None = None  # None: the one that was begun at `started_utc_s`, which is looked for first
     rate_hz: float | None = None
-    clock: str = ""
-    orders: OrderedFile | None = None
-    about: int = 0
+    clock: str = ""  # the name of the clock that it shares with others; empty: its own
+    orders: OrderedFile | None = None  # None: nobody knows them
+    about: int = 0  # how many samples it has, about; 0: by its size
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,11 +108,7 @@ class MemoryFetching:
     def fetch(
         self, writer: JournalWriter, progress: Progress, tick: Tick | None = None
     ) -> Mapping[str, SourceLostError | SourceRefusedError]:
-        """Fetch what is not there yet, one sensor after the other; those that it failed with, and why.
-
-        May be tried again, into the same journal: what came is not asked for again. What `tick` (see `Radio.run`)
-        raises ends it for a while.
-        """
+        """Fetch missing files sensor by sensor and give the failures; repeatable, also after `tick` raised."""
         failed: dict[str, SourceLostError | SourceRefusedError] = {}
         self._progress = progress
         for name, required in self._required.items():
@@ -195,21 +179,9 @@ class MemoryFetching:
     def erase(
         self, sensor: str, utc_s: int, *, is_confirmed: bool, may_lack: bool = False, others: Sequence[int] = ()
     ) -> None:
-        """Erase a sensor's memory, all of which must be in the journal: `look_into` has found so, and the user agrees.
-
-        Parameters
-        ----------
-        may_lack
-            Also where samples could not be had: they are gone then.
-        others
-            When other files that are kept, or that nobody wants, were begun.
-
-        Raises
-        ------
-        DotRefusedError
-            It is not in the journal, not confirmed, lacks samples, or the memory holds more.
-        SourceLostError
-            It is out of reach.
+        """Erase a sensor's memory once `look_into` found all of it in the journal and the user agrees.
+        `may_lack`: also with lost samples; `others`: start times of other files that may go.
+        Raises DotRefusedError where it is not all there, unconfirmed or holds more; SourceLostError.
         """
         one = self._begun.get(sensor)
         if one is None or one.result is None or not one.is_kept or not is_confirmed:

@@ -22,10 +22,7 @@ class LiveEstimator(Protocol):
     """What is done with new samples. Results are attributes that are replaced whole: the screen reads them any time."""
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
-        """Take what each sensor sent since the last call, by its name, on the acquisition's clock.
-
-        Sensors that sent nothing are missing. Called from one thread only.
-        """
+        """Take the samples each sensor sent since the last call, on the acquisition's clock; one thread only."""
 
 
 @dataclass(slots=True)
@@ -38,12 +35,8 @@ class _Task:
 class Preview:
     """The thread that runs the live estimator. It may fail or fall behind: the recording goes on.
 
-    Attributes
-    ----------
-    trouble
-        What the present estimator failed with first.
-    dropped
-        How many samples the estimator was too slow for, and never saw.
+    `trouble`: what the present estimator failed with first.
+    `dropped`: how many samples the estimator was too slow for, and never saw.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:

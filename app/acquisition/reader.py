@@ -41,13 +41,7 @@ class Reader:
         self._thread = threading.Thread(target=self._run, name=f"read {source.info.driver}", daemon=True)
 
     def open(self, begin_ns: int) -> None:
-        """Open the source, its clock beginning at `begin_ns`.
-
-        Raises
-        ------
-        SourceRefusedError
-            It does not open.
-        """
+        """Open the source, its clock starting at `begin_ns`; raises SourceRefusedError where it does not open."""
         self._begin_ns = begin_ns
         self.source.open()
         self._is_open = True

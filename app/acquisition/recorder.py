@@ -46,10 +46,7 @@ class Recorder:
 
     What is in the sensors' own memory is `memory`: once stopped, it is still to be fetched, into the same journal.
 
-    Attributes
-    ----------
-    summary
-        What was kept; None while it is recorded, or still to be fetched.
+    `summary`: what was kept; None while it is recorded, or still to be fetched.
     """
 
     def __init__(
@@ -83,23 +80,9 @@ class Recorder:
         room: Room = ROOM,
         fetched: "InMemory | None" = None,
     ) -> "Recorder":
-        """Record from now on, worn as the session's latest placement states; `fetched` was recorded before, in
-        memories.
-
-        `on_trouble` is called from any thread; `journal.disk.REPORTED` has the words. One that begins in the
-        shelter already does not call it: `is_away` shows it. The row waits for `turn`:
-        until then the session's placement may not be there. The recording waits a second for both, and no longer.
-
-        Raises
-        ------
-        JournalRefusedError
-            There is too little room.
-        LibraryError
-            There is no such session, it has a recording of this name, or one of the two is simulated.
-        SourceRefusedError
-            The sensors are to record in their memories, and one does not begin.
-        OSError
-            The folder of the recordings cannot be written, nor the shelter.
+        """Record from now on, worn as the latest placement states; waits 1 s at most for `turn` and the row.
+        `fetched`: recorded in memory before; `on_trouble`: called from any thread.
+        Raises JournalRefusedError (no room), LibraryError, SourceRefusedError or OSError.
         """
         entry = _Entry(opened, session_id, reported, acquisition.is_simulated)
         entry.start(turn)
@@ -149,10 +132,7 @@ class Recorder:
         self._writer.mark(text)
 
     def halt(self) -> None:
-        """Stop, and no more: what was recorded is whole on the disk, and is read back by `stop`.
-
-        What is in the sensors' memories is to end now, and that is noted: `finish` sees to it.
-        """
+        """Stop, leaving the recording whole on disk for `stop`; the memories' end is noted for `finish`."""
         if self.memory is not None:
             self.memory.ask_to_end()
             return
@@ -163,10 +143,7 @@ class Recorder:
                 self.summary = self._writer.stop()
 
     def finish(self, progress: "Progress", tick: "Tick") -> "Mapping[str, SourceLostError | SourceRefusedError]":
-        """End it in the sensors' memories, and fetch it; those that it failed with, and why. May be tried again.
-
-        What `tick` (see `Radio.run`) raises ends it for a while.
-        """
+        """End and fetch the memory recordings, giving failures; repeatable, also after `tick` raised."""
         assert self.memory is not None  # else there is nothing to fetch
         failed = self.memory.finish(self._writer, progress, tick)
         if not failed:
@@ -180,16 +157,7 @@ class Recorder:
             self.summary = self.summary or self._writer.stop()
 
     def stop(self, opened: OpenedLibrary) -> tuple[StoredRecording, Recording]:
-        """Stop, see that the library knows of it, and read what the journal holds. May be tried again.
-
-        Raises
-        ------
-        LibraryError
-            The database does not answer, refuses the recording, or the library is gone. Its journal is kept, and found
-            at the next start.
-        JournalRefusedError, OSError
-            The journal cannot be read.
-        """
+        """Stop and read the journal, repeatable; raises LibraryError (journal is kept) or JournalRefusedError."""
         self.halt()
         if self.summary is None:
             self.leave_in_memory()
@@ -240,13 +208,7 @@ class _Entry:
         self._steps: list[Future[object]] = []
 
     def start(self, turn: "Future[None] | None") -> None:
-        """Enter the row, in its turn.
-
-        Raises
-        ------
-        LibraryError
-            The library refuses it, rather than being busy or out of order.
-        """
+        """Add the row after `turn`; raises LibraryError if refused, not if the library is merely unavailable."""
         self._do(self._enter, turn)
         try:
             self._steps[0].result(ROW_WAIT_S)

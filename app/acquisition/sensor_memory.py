@@ -37,13 +37,7 @@ class MemoryRecording:
         return self._utc_s
 
     def begin(self, utc_s: int) -> None:
-        """Record in all of them, or in none; `utc_s` names the file.
-
-        Raises
-        ------
-        SourceRefusedError
-            One has no room, records already, does not begin, has another rate or clock, or is out of reach.
-        """
+        """Record in all memories or none, file named by `utc_s`; raises SourceRefusedError where one cannot."""
         group = self._group
         self.given_up.add(utc_s)
         clocks = {sensor.name: group.clock_of(sensor.name) for sensor in group.sensors}
@@ -113,10 +107,7 @@ class MemoryRecording:
         return RequiredFile(sensor, self._utc_s, None, rate_hz, self._clocks[name], orders, max(about, 1))
 
     def ended_early_s(self) -> Mapping[str, float]:
-        """Which sensors ended before they were asked to, by their button or a full memory, and how long before, s.
-
-        One whose end was not fetched may hold more than came, and is not among them.
-        """
+        """Give by how many s sensors ended too early (button, full memory); unknown if the end is not fetched."""
         if self.fetching is None:
             return {}
         early_s = {

@@ -19,32 +19,16 @@ ON_ITS_WAY_S = 0.25  # so much later than measured a sample may come before anyt
 
 @dataclass(frozen=True, slots=True)
 class SensorStatus:
-    """How a sensor is doing.
-
-    Attributes
-    ----------
-    source
-        Index of its source.
-    received_hz
-        Samples per second over the last two.
-    silent_s
-        Since something came last; 0 of one that is to send nothing.
-    movement_rad_s
-        Spread of the angular rate over the last second, all axes together.
-    counts
-        Since it was first received, as they came; a recording's own come from its journal.
-    lost_share
-        Of the last ten seconds: what the radio does now, not what was lost while the sensor was off.
-    """
+    """How a sensor is doing."""
 
     sensor: str
-    source: int
+    source: int  # index of its source
     details: SensorDetails
-    received_hz: float
-    silent_s: float
-    movement_rad_s: float
-    counts: SensorCounts
-    lost_share: float
+    received_hz: float  # samples per second over the last two
+    silent_s: float  # since something came last; 0 of one that is to send nothing
+    movement_rad_s: float  # spread of the angular rate over the last second, all axes together
+    counts: SensorCounts  # since it was first received, as they came; a recording's own come from its journal
+    lost_share: float  # of the last ten seconds: what the radio does now, not what was lost while the sensor was off
 
 
 class SensorStream:

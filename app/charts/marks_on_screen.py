@@ -1,98 +1,114 @@
-"""Painting marks on the screen: brackets, values at peaks, boxes of hidden curves, and gaps with their bars."""
+"""The screen's canvas, and gaps with their bars, which are the screen's alone."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QFont, QFontMetrics, QFontMetricsF, QPainter, QPainterPath
+from PySide6.QtGui import QBrush, QColor, QFont, QFontMetrics, QFontMetricsF, QPainter, QPainterPath, QPen
 
+from app.charts.canvas import Anchor, Lengths, Tone
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.marks import CurveLabel, Deviation, Gap, HiddenCurve, Point
-from app.charts.places import Box, Layout, MarkPlace, Size, Sizes, ground_of, layout_of
+from app.charts.marks import Gap
+from app.charts.places import Box, Layout, layout_of
 from app.charts.stride_chart import StrideChart
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS, Theme
-from app.wording.verdicts import verdict_alone
 from core.body import Side
-from core.verdicts.model import Verdict
 
+TICKS_HEIGHT, TICK = 24, 4
 BAR_PX, HAIRLINE_PX, LABEL_DOT, LABEL_DOT_EDGE_PX, HALO_PX = 2.5, 1.0, 4.0, 1.75, 3.5
 LINE_HEIGHT, FIRST_SIZE, WORDS_SIZE = 16, 13, 12
 HIDDEN_HEIGHT, HIDDEN_PADDING = 46, 10
 GAP_BAR, GAP_ROW, LETTER_APART = 4, 6, 4
-AT_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-AT_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+FAR = 1000.0  # px: a text is aligned in a room that is larger than it
+ALIGN: dict[Anchor, Qt.AlignmentFlag] = {
+    "start": Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter,
+    "middle": Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter,
+    "end": Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
+}
+BEFORE: dict[Anchor, float] = {"start": 0.0, "middle": 0.5, "end": 1.0}  # share of a text that is left of its place
+
+
+class ScreenCanvas:
+    """Draws with a painter, in the theme's colours; an unused painter does for measuring."""
+
+    def __init__(self, painter: QPainter, theme: Theme) -> None:
+        self._painter, self._theme = painter, theme
+        c, px = theme.colours, theme.px
+        self._tones = {Tone.INK: c.ink, Tone.NOTE: c.ink2, Tone.AXIS: c.control, Tone.INSIDE_ERROR: c.control}
+        self.lengths = Lengths(
+            tick=px(TICK),
+            label_apart=2 * px(TICK),
+            percents_below=px(TICK) + (px(TICKS_HEIGHT) - px(TICK)) / 2,
+            zero=HAIRLINE_PX,
+            axis=HAIRLINE_PX,
+            bar=BAR_PX,
+            leader=HAIRLINE_PX,
+            dot=px(LABEL_DOT + LABEL_DOT_EDGE_PX),
+            halo=px(HALO_PX),
+            line=px(LINE_HEIGHT),
+            chip=px(CHIP),
+            hidden_padding=px(HIDDEN_PADDING),
+            hidden_margins=px(3 * HIDDEN_PADDING + CHIP),
+            hidden_height=px(HIDDEN_HEIGHT),
+        )
+
+    def stroke(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None:
+        pen = self._theme.pen(self._tones[tone], width)
+        self._painter.setPen(flat(pen) if tone is Tone.AXIS else pen)
+        self._painter.drawLine(QPointF(*start), QPointF(*end))
+
+    def label(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
+        self._painter.setFont(self._theme.font(WORDS_SIZE))
+        self._painter.setPen(QColor(self._theme.colours.ink2))
+        room = QRectF(x - 2 * FAR * BEFORE[anchor], middle - FAR, 2 * FAR, 2 * FAR)
+        self._painter.drawText(room, ALIGN[anchor], stated)
+
+    def words(self, x: float, middle: float, stated: str, anchor: Anchor, tone: Tone | Side, *, is_first: bool) -> None:
+        font = _font(self._theme, is_first=is_first)
+        metrics, letters = QFontMetricsF(font), QPainterPath()
+        left = x - BEFORE[anchor] * metrics.horizontalAdvance(stated)
+        letters.addText(QPointF(left, middle + metrics.capHeight() / 2), font, stated)
+        self._painter.strokePath(letters, self._theme.pen(self._theme.colours.surface, HALO_PX))
+        colour = self._theme.text(tone) if isinstance(tone, Side) else QColor(self._tones[tone])
+        self._painter.fillPath(letters, colour)
+
+    def width_of(self, stated: str, *, is_first: bool) -> float:
+        return QFontMetrics(_font(self._theme, is_first=is_first)).horizontalAdvance(stated) + 1
+
+    def dot(self, x: float, y: float, side: Side) -> None:
+        theme, is_left = self._theme, side is Side.LEFT
+        colour, surface = theme.curve(side), QColor(theme.colours.surface)
+        self._painter.setPen(theme.pen(surface if is_left else colour, LABEL_DOT_EDGE_PX))
+        self._painter.setBrush(colour if is_left else surface)
+        self._painter.drawEllipse(QPointF(x, y), LABEL_DOT * theme.scale, LABEL_DOT * theme.scale)
+        self._painter.setBrush(Qt.BrushStyle.NoBrush)
+
+    def chip(self, left: float, middle: float, side: Side) -> None:
+        size = self._theme.px(CHIP)
+        paint_chip(self._painter, QRectF(left, middle - size / 2, size, size), side, self._theme)
+
+    def hatched_box(self, left: float, top: float, width: float, height: float) -> None:
+        theme, painter, room = self._theme, self._painter, QRectF(left, top, width, height)
+        theme.paint_box(painter, room, theme.colours.surface, radius=CHIP_RADIUS)
+        pen = theme.pen(theme.colours.control, 1)
+        pen.setDashPattern([4.0, 3.0])
+        painter.setPen(pen)
+        painter.setBrush(QBrush(QColor(theme.colours.line), Qt.BrushStyle.BDiagPattern))
+        painter.drawRoundedRect(room, CHIP_RADIUS * theme.scale, CHIP_RADIUS * theme.scale)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+
+
+def flat(pen: QPen) -> QPen:
+    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+    return pen
 
 
 def layout_on_screen(theme: Theme, frame: Frame, chart: StrideChart) -> Layout:
     """Where all words of a chart find room, px."""
-    line, small = theme.px(LINE_HEIGHT), QFontMetrics(_font(theme, is_first=False))
-    first = QFontMetrics(_font(theme, is_first=True))
-
-    def of_label(label: CurveLabel) -> Size:
-        return first.horizontalAdvance(label.text) + 1 + theme.px(HALO_PX), line
-
-    def of_bracket(bracket: Deviation) -> list[Size]:
-        words, more = first.horizontalAdvance(bracket.words) + 1, small.horizontalAdvance(bracket.more) + 1
-        return [(words, line), (max(words, more), 2 * line)] if bracket.more else [(words, line)]
-
-    def of_hidden(hidden: HiddenCurve) -> Size:
-        words = max(first.horizontalAdvance(_not_reported()), small.horizontalAdvance(hidden.reason))
-        return theme.px(3 * HIDDEN_PADDING + CHIP) + words + 1, theme.px(HIDDEN_HEIGHT)
-
-    ground = ground_of(frame, chart, _gap_boxes(theme, frame, chart.gaps))
-    return layout_of(ground, chart, Sizes(of_label, of_bracket, of_hidden, theme.px(LABEL_DOT + LABEL_DOT_EDGE_PX)))
-
-
-def paint_bracket(painter: QPainter, theme: Theme, frame: Frame, bracket: Deviation, place: MarkPlace) -> None:
-    """Dots on both points, hairlines to the bar between their heights, and the words beside it."""
-    colour = theme.colours.ink if bracket.is_larger_than_error else theme.colours.control
-    for point in bracket.points:
-        at = _at(frame, point)
-        painter.setPen(theme.pen(colour, HAIRLINE_PX))
-        painter.drawLine(at, QPointF(place.bar_x, at.y()))
-    painter.setPen(theme.pen(colour, BAR_PX))
-    painter.drawLine(QPointF(place.bar_x, place.top), QPointF(place.bar_x, place.bottom))
-    for point in bracket.points:
-        _paint_dot(painter, theme, frame, point)
-    if (box := place.words) is None:
-        return
-    line, align = theme.px(LINE_HEIGHT), AT_LEFT if place.are_words_at_right else AT_RIGHT
-    for row, (text, tone) in enumerate(((bracket.words, theme.colours.ink), (bracket.more, theme.colours.ink2))):
-        if row < place.lines:
-            room = QRectF(box.left, box.top + row * line, box.right - box.left, line)
-            _paint_haloed(painter, theme, room, align, text, QColor(tone), is_first=row == 0)
-
-
-def paint_label(painter: QPainter, theme: Theme, frame: Frame, label: CurveLabel, box: Box | None) -> None:
-    """A dot on the curve, and the value beside it in the leg's colour."""
-    _paint_dot(painter, theme, frame, label.point)
-    if box is not None:
-        centre = Qt.AlignmentFlag.AlignCenter
-        _paint_haloed(painter, theme, _rect(box), centre, label.text, theme.text(label.side), is_first=True)
-
-
-def paint_hidden(painter: QPainter, theme: Theme, hidden: HiddenCurve, box: Box) -> None:
-    """A hatched box with the leg's chip, so that nobody takes it for a curve."""
-    room, padding, chip = _rect(box), theme.px(HIDDEN_PADDING), theme.px(CHIP)
-    radius = CHIP_RADIUS * theme.scale
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(theme.colours.surface))
-    painter.drawRoundedRect(room, radius, radius)
-    pen = theme.pen(theme.colours.control, 1)
-    pen.setDashPattern([4.0, 3.0])
-    painter.setPen(pen)
-    painter.setBrush(QBrush(QColor(theme.colours.line), Qt.BrushStyle.BDiagPattern))
-    painter.drawRoundedRect(room, radius, radius)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-    paint_chip(painter, QRectF(box.left + padding, room.center().y() - chip / 2, chip, chip), hidden.side, theme)
-    lines, line = [text for text in (_not_reported(), hidden.reason) if text], theme.px(LINE_HEIGHT)
-    top = room.center().y() - line * len(lines) / 2
-    for row, text in enumerate(lines):
-        words = QRectF(box.left + 2 * padding + chip, top + row * line, room.width() - 3 * padding - chip + 1, line)
-        _paint_haloed(painter, theme, words, AT_LEFT, text, QColor(theme.colours.ink), is_first=row == 0)
+    return layout_of(ScreenCanvas(QPainter(), theme), frame, chart, _gap_boxes(theme, frame, chart.gaps))
 
 
 def paint_gaps(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:
@@ -115,7 +131,7 @@ def paint_gap_bars(painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence
     painter.setFont(_font(theme, is_first=True))
     for gap, box in _gap_letters(theme, frame, gaps):
         painter.setPen(theme.text(gap.joint.side))
-        painter.drawText(_rect(box), AT_LEFT, gap.joint.side.letter)
+        painter.drawText(_rect(box), ALIGN["start"], gap.joint.side.letter)
 
 
 def _gap_boxes(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[Box]:
@@ -152,41 +168,5 @@ def _rect(box: Box) -> QRectF:
     return QRectF(QPointF(box.left, box.top), QPointF(box.right, box.bottom))
 
 
-def _paint_dot(painter: QPainter, theme: Theme, frame: Frame, point: Point) -> None:
-    """Left filled, right outlined."""
-    side, centre = point.joint.side, _at(frame, point)
-    colour, surface = theme.curve(side), QColor(theme.colours.surface)
-    is_left = side is Side.LEFT
-    painter.setPen(theme.pen(surface if is_left else colour, LABEL_DOT_EDGE_PX))
-    painter.setBrush(colour if is_left else surface)
-    painter.drawEllipse(centre, LABEL_DOT * theme.scale, LABEL_DOT * theme.scale)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-
-
-def _paint_haloed(
-    painter: QPainter, theme: Theme, room: QRectF, align: Qt.AlignmentFlag, text: str, colour: QColor, *, is_first: bool
-) -> None:
-    """Words that are read over curves and bands, for what is about them is the surface's colour."""
-    font = _font(theme, is_first=is_first)
-    metrics = QFontMetricsF(font)
-    left = room.left()
-    if align & Qt.AlignmentFlag.AlignRight:
-        left = room.right() - metrics.horizontalAdvance(text)
-    elif align & Qt.AlignmentFlag.AlignHCenter:
-        left = room.center().x() - metrics.horizontalAdvance(text) / 2
-    letters = QPainterPath()
-    letters.addText(QPointF(left, room.center().y() + metrics.capHeight() / 2), font, text)
-    painter.strokePath(letters, theme.pen(theme.colours.surface, HALO_PX))
-    painter.fillPath(letters, colour)
-
-
-def _not_reported() -> str:
-    return verdict_alone(Verdict.NOT_REPORTED)
-
-
 def _font(theme: Theme, *, is_first: bool) -> QFont:
     return theme.font(FIRST_SIZE, QFont.Weight.DemiBold) if is_first else theme.font(WORDS_SIZE)
-
-
-def _at(frame: Frame, point: Point) -> QPointF:
-    return QPointF(float(frame.x(point.percent)), float(frame.y(point.angle_deg)))

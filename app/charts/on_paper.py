@@ -10,22 +10,9 @@ import numpy as np
 
 from app.charts.axes import angle_in_words
 from app.charts.cycles import PERCENT, Band
-from app.charts.drawing import (
-    BADGE,
-    COLOURS,
-    DASHES,
-    MM,
-    Picture,
-    area,
-    badge,
-    box,
-    curve,
-    line,
-    mixed,
-    picture,
-    text,
-)
+from app.charts.drawing import BADGE, COLOURS, DASHES, MM, Drawing, Picture, mixed
 from app.charts.frame import Frame
+from app.charts.marks import stretches
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
 from app.theme.colours import PAPER
 from app.wording.translation import tr
@@ -84,176 +71,161 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
     frame = frame_of(chart, plot_width)
     is_narrow = plot_width < NARROW
     foot = NARROW_FOOT if is_narrow else FOOT
-    parts = [text(0, 8, chart.title, 7.6, weight=600)]
+    pen = Drawing()
+    pen.text(0, 8, chart.title, 7.6, weight=600)
     if chart.not_reported:
-        parts += hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_not_reported(frame, chart)
+        draw_hatches(pen, frame)
+        _draw_axes(pen, frame, chart.axis, is_narrow=is_narrow)
+        _draw_why_not_reported(pen, frame, chart)
         alt = " ".join(filter(None, [chart.alt, f"{_not_reported_word()}. {chart.not_reported}"]))
-        return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
+        return pen.picture(frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
     if chart.band is not None:
-        parts += band_on_paper(frame, chart.band)
-    parts += _axes(frame, chart.axis, is_narrow=is_narrow)
-    parts += _toe_offs(frame, [one for one in chart.curves if not one.is_bare], is_narrow=is_narrow)
+        draw_band(pen, frame, chart.band)
+    _draw_axes(pen, frame, chart.axis, is_narrow=is_narrow)
     drawn = [one for one in chart.curves if not one.is_bare]
+    _draw_toe_offs(pen, frame, drawn, is_narrow=is_narrow)
     for one in chart.curves:
         thin = STRIDE if one.is_known else ONLY_STRIDES
-        parts += [curve(frame.x(PERCENT), frame.y(stride), _look(one)[0], thin) for stride in one.strides_deg]
+        for stride in one.strides_deg:
+            pen.curve(frame.x(PERCENT), frame.y(stride), _look(one)[0], thin)
         if not one.is_known:
-            parts += _letters_of_strides(frame, one)
+            _draw_letters_of_strides(pen, frame, one)
     for one in drawn:
         x, y = frame.x(PERCENT), frame.y(one.angle_deg)
         colour, width = _look(one)
         casing = 0.9 if one.order is not None else 1.7
-        parts += [curve(x, y, PAPER.paper, width + casing), curve(x, y, colour, width, _dash(one))]
-        parts += _beyond(frame, chart.axis, one)
-    parts += _words(frame, chart) if drawn else _simulated(frame, chart)
-    parts += _badges(frame, drawn)
-    return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, chart.alt)
+        pen.curve(x, y, PAPER.paper, width + casing)
+        pen.curve(x, y, colour, width, _dash(one))
+        _draw_beyond(pen, frame, chart.axis, one)
+    if drawn:
+        pen.text(frame.left + 4, frame.top + 9.5, f"↑ {chart.axis.up}", 6.6, fill=PAPER.note)
+        down = f"↓ {chart.axis.down}"
+        pen.text(frame.right - 4, frame.bottom - 4.5, down, 6.6, anchor="end", fill=PAPER.note)
+    _draw_simulated(pen, frame, chart)
+    _draw_badges(pen, frame, drawn)
+    return pen.picture(frame.right + RIGHT_MARGIN, frame.bottom + foot, chart.alt)
 
 
-def band_on_paper(frame: Frame, band: Band) -> list[str]:
+def draw_band(draw: Drawing, frame: Frame, band: Band) -> None:
     """Mean, 1 and 2 SD, with edges that survive a photocopier."""
     x, mean, sd = frame.x(PERCENT), band.mean_deg, band.sd_deg
-    return [
-        area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), PAPER.band_2sd, PAPER.band_2sd_edge, 0.35),
-        area(x, frame.y(mean - sd), frame.y(mean + sd), PAPER.band_1sd, PAPER.band_1sd_edge, 0.35),
-        curve(x, frame.y(mean), PAPER.band_mean, 0.6),
-    ]
+    draw.area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)
+    draw.area(x, frame.y(mean - sd), frame.y(mean + sd), PAPER.band_1sd, PAPER.band_1sd_edge, 0.35)
+    draw.curve(x, frame.y(mean), PAPER.band_mean, 0.6)
 
 
 def _not_reported_word() -> str:
     return verdict_alone(Verdict.NOT_REPORTED)
 
 
-def hatches(frame: Frame) -> list[str]:
+def draw_hatches(draw: Drawing, frame: Frame) -> None:
     """Hatching over the whole plot, so that nobody takes it for a curve."""
-    parts = []
     for along in np.arange(-frame.height, frame.width, HATCH_APART):
         first, last = max(along, 0.0), min(along + frame.height, frame.width)  # of the width, from bottom to top
         ends = [(frame.left + x, frame.bottom - (x - along)) for x in (first, last)]
-        parts.append(line(*ends[0], *ends[1], PAPER.grid, 0.35))
-    return parts
+        draw.line(*ends[0], *ends[1], PAPER.grid, 0.35)
 
 
-def _why_not_reported(frame: Frame, chart: StrideChart) -> list[str]:
+def _draw_why_not_reported(draw: Drawing, frame: Frame, chart: StrideChart) -> None:
     lines = wrap(chart.not_reported, int(0.8 * frame.width / (PER_LETTER * SIZE_OF_WORDS)))
     middle, height = (frame.top + frame.bottom) / 2, 16 + LINE_OF_WORDS * len(lines)
     top, x = max(middle - height / 2, frame.top + BELOW_MARK), (frame.left + frame.right) / 2
-    parts = [box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, PAPER.paper)]
-    parts.append(text(x, top + 10, _not_reported_word(), 8.6, anchor="middle", weight=600))
+    draw.box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, PAPER.paper)
+    draw.text(x, top + 10, _not_reported_word(), 8.6, anchor="middle", weight=600)
     for k, words in enumerate(lines):
-        parts.append(text(x, top + 12 + LINE_OF_WORDS * (k + 0.8), words, SIZE_OF_WORDS, anchor="middle"))
-    return parts + _simulated(frame, chart)
+        draw.text(x, top + 12 + LINE_OF_WORDS * (k + 0.8), words, SIZE_OF_WORDS, anchor="middle")
+    _draw_simulated(draw, frame, chart)
 
 
-def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
-    parts = []
+def _draw_axes(draw: Drawing, frame: Frame, axis: Axis, *, is_narrow: bool) -> None:
     for percent in range(0, 101, 10):
         x = float(frame.x(percent))
         is_labelled = percent % (20 if frame.width >= NARROWEST else 50) == 0
         if is_labelled and 0 < percent < 100:
-            parts.append(line(x, frame.top, x, frame.bottom, PAPER.grid, 0.25))
-        parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), PAPER.ink, 0.6))
+            draw.line(x, frame.top, x, frame.bottom, PAPER.grid, 0.25)
+        draw.line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), PAPER.ink, 0.6)
         if is_labelled:
             stated = f"{percent} %" if is_narrow and percent == 100 else str(percent)
-            parts.append(text(x, frame.bottom + 12, stated, 7, anchor="middle"))
+            draw.text(x, frame.bottom + 12, stated, 7, anchor="middle")
     for degrees in np.arange(axis.low, axis.high + 1, axis.tick_every):
         y = float(frame.y(degrees))
         is_labelled = degrees % axis.label_every == 0
         if is_labelled and axis.low < degrees < axis.high:
             width, colour = (0.55, PAPER.ink) if degrees == 0 else (0.25, PAPER.grid)
-            parts.append(line(frame.left, y, frame.right, y, colour, width))
-        parts.append(line(frame.left - (4 if is_labelled else 2.5), y, frame.left, y, PAPER.ink, 0.6))
+            draw.line(frame.left, y, frame.right, y, colour, width)
+        draw.line(frame.left - (4 if is_labelled else 2.5), y, frame.left, y, PAPER.ink, 0.6)
         if is_labelled:
-            parts.append(text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end"))
+            draw.text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end")
     if not is_narrow:
         middle, stated = (
             (frame.left + frame.right) / 2,
             tr("Gait cycle, % (0 and 100 = initial contact of the same foot)"),
         )
-        parts.append(text(middle, frame.bottom + 22, stated, 7, anchor="middle"))
-    parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", PAPER.ink, 0.7))
-    return parts
+        draw.text(middle, frame.bottom + 22, stated, 7, anchor="middle")
+    draw.box(frame.left, frame.top, frame.width, frame.height, "none", PAPER.ink, 0.7)
 
 
-def _letters_of_strides(frame: Frame, one: StrideCurve) -> list[str]:
+def _draw_letters_of_strides(draw: Drawing, frame: Frame, one: StrideCurve) -> None:
     """A letter on each of few strides, which no mean names, each farther along so that none covers another."""
-    parts = []
     for number, stride in enumerate(one.strides_deg):
         at = int(LETTERS_FROM + number * LETTERS_APART) % POINTS
         x, y = float(frame.x(at)), float(frame.y(float(stride[at])))
-        parts.append(badge(x, y, one.letter, one.side, _look(one)[0]))
-    return parts
+        draw.badge(x, y, one.letter, one.side, _look(one)[0])
 
 
-def _toe_offs(frame: Frame, curves: Sequence[StrideCurve], *, is_narrow: bool) -> list[str]:
+def _draw_toe_offs(draw: Drawing, frame: Frame, curves: Sequence[StrideCurve], *, is_narrow: bool) -> None:
     known = toe_offs_in_order(curves, 1)
-    parts = []
     is_many = any(one.order is not None for one in known)
     for k, one in enumerate(known):
         x = float(frame.x(one.toe_off_percent))
-        parts.append(line(x, frame.top, x, frame.bottom, _look(one)[0], 0.55 if is_many else 0.9, _dash(one)))
+        draw.line(x, frame.top, x, frame.bottom, _look(one)[0], 0.55 if is_many else 0.9, _dash(one))
         if np.isfinite(one.toe_off_sd):
             reach = frame.width * one.toe_off_sd / 100
-            parts.append(line(x - reach, frame.top, x + reach, frame.top, PAPER.ink, 1.4))
+            draw.line(x - reach, frame.top, x + reach, frame.top, PAPER.ink, 1.4)
         if is_many:
             spread = float(frame.x(sum(each.toe_off_percent for each in known) / len(known)))
             at = spread + 10 * (k - (len(known) - 1) / 2)
-            parts.append(line(x, frame.top, at, frame.top - 4.5, PAPER.ink, 0.4))
-            parts.append(text(at, frame.top - 6.5, one.toe_off_label, 7, anchor="middle", weight=600))
+            draw.line(x, frame.top, at, frame.top - 4.5, PAPER.ink, 0.4)
+            draw.text(at, frame.top - 6.5, one.toe_off_label, 7, anchor="middle", weight=600)
             if k == 0:
-                parts.append(text(at - 7, frame.top - 6.5, tr("toe-off"), 7, anchor="end"))
+                draw.text(at - 7, frame.top - 6.5, tr("toe-off"), 7, anchor="end")
         else:
             is_earlier = k == 0 and len(known) == 2
             at, anchor = (x - 3, "end") if is_earlier else (x + 3, "start")
             if is_narrow and len(known) == 1:
                 at, anchor = x, "middle"  # beside the line there is no room
-            parts.append(text(at, frame.top - 4.5, one.toe_off_label, 7, anchor=anchor))
-    return parts
+            draw.text(at, frame.top - 4.5, one.toe_off_label, 7, anchor=anchor)
 
 
-def _beyond(frame: Frame, axis: Axis, one: StrideCurve) -> list[str]:
+def _draw_beyond(draw: Drawing, frame: Frame, axis: Axis, one: StrideCurve) -> None:
     """A small arrow in the middle of each stretch that leaves the axes."""
-    parts = []
     for is_out, y, step in (
         (one.angle_deg > axis.high, frame.top, -5.0),
         (one.angle_deg < axis.low, frame.bottom, 5.0),
     ):
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], is_out.astype(int), [0]])))
-        for first, last in zip(edges[::2], edges[1::2], strict=True):
-            x = float(frame.x((first + last - 1) / 2))
-            tip = f"{x:.2f},{y + step:.2f} {x - 2.6:.2f},{y:.2f} {x + 2.6:.2f},{y:.2f}"
-            parts.append(f'<polygon points="{tip}" fill="{_look(one)[0]}"/>')
-    return parts
+        for first, last in stretches(is_out):
+            x = float(frame.x((first + last) / 2))
+            draw.polygon([(x, y + step), (x - 2.6, y), (x + 2.6, y)], _look(one)[0])
 
 
-def _words(frame: Frame, chart: StrideChart) -> list[str]:
-    parts = [
-        text(frame.left + 4, frame.top + 9.5, f"↑ {chart.axis.up}", 6.6, fill=PAPER.note),
-        text(frame.right - 4, frame.bottom - 4.5, f"↓ {chart.axis.down}", 6.6, anchor="end", fill=PAPER.note),
-    ]
-    return parts + _simulated(frame, chart)
+def _draw_simulated(draw: Drawing, frame: Frame, chart: StrideChart) -> None:
+    if chart.is_simulated:
+        draw.text(frame.right - 4, frame.top + 9.5, tr("SIMULATED"), 6.6, anchor="end", weight=600)
 
 
-def _simulated(frame: Frame, chart: StrideChart) -> list[str]:
-    stated = text(frame.right - 4, frame.top + 9.5, tr("SIMULATED"), 6.6, anchor="end", weight=600)
-    return [stated] if chart.is_simulated else []
-
-
-def _badges(frame: Frame, curves: Sequence[StrideCurve]) -> list[str]:
+def _draw_badges(draw: Drawing, frame: Frame, curves: Sequence[StrideCurve]) -> None:
     """Two letters on every line, where it lies farthest from the others and the letters there already."""
     drawn = [one for one in curves if one.is_known]
     x = frame.x(PERCENT)
     heights = [frame.y(one.angle_deg) for one in drawn]
     taken: list[tuple[float, float]] = []
-    parts = []
     for half in (range(7, 49), range(52, 94)):
         for one, y in zip(drawn, heights, strict=True):
             others = [other for other in heights if other is not y]
             at = _best_place(half, x, y, others, taken, frame)
             if at is not None:
                 taken.append((float(x[at]), float(y[at])))
-                parts.append(badge(float(x[at]), float(y[at]), one.letter, one.side, _look(one)[0]))
-    return parts
+                draw.badge(float(x[at]), float(y[at]), one.letter, one.side, _look(one)[0])
 
 
 def _best_place(

@@ -8,22 +8,20 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen, QPolygonF
 
-from app.charts.axes import angle_in_words
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.marks_on_screen import paint_bracket, paint_gap_bars, paint_gaps, paint_hidden, paint_label
+from app.charts.marks_on_screen import ALIGN, LINE_HEIGHT, TICKS_HEIGHT, ScreenCanvas, flat, paint_gap_bars, paint_gaps
 from app.charts.places import Layout
 from app.charts.stride_chart import StrideChart, StrideCurve, toe_off_labels, toe_offs_in_order
+from app.charts.stride_drawing import draw_axes, draw_marks
 from app.theme.theme import Theme
 from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
 
 LABEL_HEIGHT = 24  # toe-off is above the plot
-TICKS_HEIGHT = 24
 LEFT_MARGIN = 32
 RIGHT_MARGIN = 24  # half of "100 %" is beside the plot, and SIMULATED upright
-TICK, TICK_PERCENT = 4, 20
 SIMULATED = later("SIMULATED")
 MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 2.0, 1.0, 1.25
 STRIDE_ALPHA = 0.7
@@ -31,12 +29,8 @@ SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
 FIRST_PX, LAST_PX, FIRST_ALPHA = 1.25, 2.75, 0.65  # of curves that are compared
 COMPARED_TOE_OFF_PX, DASH_PX = 0.75, (9.0, 5.0)
 DOT, LETTER_PX, LETTERS_APART = 10, 12, 4  # DOT: radius of a letter's circle
-LINE_HEIGHT = 16
 LEADER_PERCENT = 16  # from where the curves are read to their letters
 CURSOR_PX, HANDLE = 1.5, (9, 6)
-AT_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-AT_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-AT_CENTRE = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter
 
 
 def frame_of(theme: Theme, width: float, height: float, chart: StrideChart) -> Frame:
@@ -53,7 +47,7 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
         with _clipped(painter, frame):
             for sds, colour in ((2, theme.colours.band_2sd), (1, theme.colours.band_1sd)):
                 _fill(painter, frame, band.mean_deg, sds * band.sd_deg, QColor(colour))
-    _paint_axes(painter, theme, frame, chart)
+    draw_axes(ScreenCanvas(painter, theme), frame, chart.axis)
     with _clipped(painter, frame):
         paint_gaps(painter, theme, frame, chart)
         if chart.is_comparison:
@@ -78,12 +72,7 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
 def paint_words(painter: QPainter, theme: Theme, frame: Frame, layout: Layout) -> None:
     """Draw what is read on the curves: brackets, values at peaks, boxes of hidden curves."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    for hidden, box in layout.hidden:
-        paint_hidden(painter, theme, hidden, box)
-    for bracket, place in layout.brackets:
-        paint_bracket(painter, theme, frame, bracket, place)
-    for label, label_box in layout.labels:
-        paint_label(painter, theme, frame, label, label_box)
+    draw_marks(ScreenCanvas(painter, theme), frame, layout)
 
 
 def paint_cursor(painter: QPainter, theme: Theme, frame: Frame, percents: Collection[float]) -> None:
@@ -140,31 +129,6 @@ def _fill(painter: QPainter, frame: Frame, mean: FloatArray, reach: FloatArray, 
     painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
-def _paint_axes(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:
-    axis, tick = chart.axis, theme.px(TICK)
-    painter.setFont(theme.font(12))
-    line, ink = _flat(theme.pen(theme.colours.control, 1)), QColor(theme.colours.ink2)
-    painter.setPen(line)
-    painter.drawLine(_at(frame, 0, 0), _at(frame, 100, 0))
-    painter.drawLine(QPointF(frame.left, frame.bottom), QPointF(frame.left, frame.top))
-    painter.drawLine(QPointF(frame.left, frame.bottom), QPointF(frame.right, frame.bottom))
-    first = np.ceil(axis.low / axis.label_every) * axis.label_every
-    for angle in np.arange(first, axis.high + 1, axis.label_every):
-        y = float(frame.y(angle))
-        painter.setPen(line)
-        painter.drawLine(QPointF(frame.left - tick, y), QPointF(frame.left, y))
-        painter.setPen(ink)
-        room = QRectF(0, y - frame.height, frame.left - 2 * tick, 2 * frame.height)
-        painter.drawText(room, AT_RIGHT, angle_in_words(angle))
-    for percent in range(0, 101, TICK_PERCENT):
-        x = float(frame.x(percent))
-        painter.setPen(line)
-        painter.drawLine(QPointF(x, frame.bottom), QPointF(x, frame.bottom + tick))
-        painter.setPen(ink)
-        room = QRectF(x - frame.width, frame.bottom + tick, 2 * frame.width, theme.px(TICKS_HEIGHT) - tick)
-        painter.drawText(room, AT_CENTRE, f"{percent}" if percent < 100 else "100 %")
-
-
 def _paint_strides(painter: QPainter, theme: Theme, frame: Frame, curve: StrideCurve) -> None:
     """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean is set apart."""
     is_few = len(curve.strides_deg) <= SMOOTH_UP_TO
@@ -206,15 +170,10 @@ def _pen(theme: Theme, curve: StrideCurve, width: float | None = None) -> QPen:
     return pen
 
 
-def _flat(pen: QPen) -> QPen:
-    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
-    return pen
-
-
 def _paint_mean(painter: QPainter, theme: Theme, frame: Frame, curve: StrideCurve) -> None:
     """On a casing that lifts it off the band."""
     line = _polygon(frame, PERCENT, curve.angle_deg)
-    painter.setPen(_flat(theme.pen(theme.colours.surface, _width_px(curve) + CASING_PX)))
+    painter.setPen(flat(theme.pen(theme.colours.surface, _width_px(curve) + CASING_PX)))
     painter.drawPolyline(line)
     painter.setPen(_pen(theme, curve))
     painter.drawPolyline(line)
@@ -251,7 +210,7 @@ def _paint_simulated(painter: QPainter, theme: Theme, frame: Frame, width: float
     painter.translate(width, frame.top + frame.height / 2)
     painter.rotate(-90)
     height = theme.px(LINE_HEIGHT)
-    painter.drawText(QRectF(-frame.height, -height, 2 * frame.height, height), AT_CENTRE, tr(SIMULATED))
+    painter.drawText(QRectF(-frame.height, -height, 2 * frame.height, height), ALIGN["middle"], tr(SIMULATED))
     painter.restore()
 
 
@@ -260,7 +219,7 @@ def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float,
     metrics = QFontMetrics(theme.font(12, QFont.Weight.Medium))
     painter.setFont(theme.font(12))
     painter.setPen(QColor(theme.colours.ink2))
-    painter.drawText(QRectF(0, 0, width, frame.top), AT_LEFT, chart.sign)
+    painter.drawText(QRectF(0, 0, width, frame.top), ALIGN["start"], chart.sign)
     least: float = QFontMetrics(theme.font(12)).horizontalAdvance(chart.sign) + theme.px(8)
     painter.setFont(theme.font(12, QFont.Weight.Medium))
     labels = toe_off_labels(chart.curves)
@@ -274,7 +233,7 @@ def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float,
         needed = metrics.horizontalAdvance(label) + 1
         left = x - needed - theme.px(4) if i == 0 else x + theme.px(4)
         left = min(max(left, least), width - needed)  # what is positive is known, and gives way last
-        painter.drawText(QRectF(left, 0, needed, frame.top), AT_LEFT, label)
+        painter.drawText(QRectF(left, 0, needed, frame.top), ALIGN["start"], label)
         least = left + needed + theme.px(4)
 
 
@@ -291,10 +250,7 @@ def _paint_letters(painter: QPainter, theme: Theme, frame: Frame, chart: StrideC
 
 
 def _letters(theme: Theme, frame: Frame, curves: Sequence[StrideCurve]) -> list[tuple[StrideCurve, QPointF, QPointF]]:
-    """The centre of each curve's letter, and the point of the curve where it is read: where they lie furthest apart.
-
-    The circles stand above one another in the order of the curves, beside them, inside the plot.
-    """
+    """Give each curve's letter centre and its point on the curve, where the curves lie furthest apart."""
     if not curves:
         return []
     means = np.array([curve.angle_deg for curve in curves])

@@ -1,16 +1,19 @@
 """Free places in a chart: where a bracket, the value at a peak or the box of a hidden curve cover the curves least."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.charts.canvas import Canvas
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
 from app.charts.marks import BAND_SDS, CurveLabel, Deviation, HiddenCurve
 from app.charts.stride_chart import StrideChart, toe_offs_in_order
+from app.wording.verdicts import verdict_alone
 from core.body import JointKind
 from core.samples import FloatArray
+from core.verdicts.model import Verdict
 
 USUAL_EMPTY_PERCENT = {  # between the stance's curve and the swing's
     JointKind.HIP: 50.0,
@@ -59,7 +62,7 @@ class Box:
 
 
 @dataclass
-class Ground:
+class ChartGround:
     """What a chart has drawn already: curves (n, 2), pale ones such as a band's edges, upright lines, and boxes."""
 
     frame: Frame
@@ -82,19 +85,6 @@ class Ground:
         """What it costs to cover the curves in a box."""
         x, y, cost = self._pieces.T
         return float(cost[(box.left < x) & (x < box.right) & (box.top < y) & (y < box.bottom)].sum())
-
-
-@dataclass(frozen=True, slots=True)
-class Sizes:
-    """How large a painter's words are: a label's, a bracket's with one line, two lines and so on, a box's.
-
-    `dot` is the radius of the dot at a label's point.
-    """
-
-    label: Callable[[CurveLabel], Size]
-    bracket: Callable[[Deviation], Sequence[Size]]
-    hidden: Callable[[HiddenCurve], Size]
-    dot: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,20 +111,37 @@ class Layout:
     labels: tuple[tuple[CurveLabel, Box | None], ...]
 
 
-def layout_of(ground: Ground, chart: StrideChart, sizes: Sizes) -> Layout:
+def layout_of(canvas: Canvas, frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Layout:
     """Boxes of hidden curves first, then brackets, then labels: what is larger chooses first."""
-    frame = ground.frame
-    hidden = tuple((one, place_hidden(ground, sizes.hidden(one))) for one in chart.hidden)
+    ground, size = ground_of(frame, chart, taken), canvas.lengths
+    hidden = tuple((one, place_hidden(ground, _size_of_hidden(canvas, one))) for one in chart.hidden)
     brackets = []
     for deviation in chart.deviations:
         ends = [_at(frame, point.percent, point.angle_deg) for point in deviation.points]
         kind = USUAL_EMPTY_PERCENT[deviation.kind]
-        brackets.append((deviation, place_mark(ground, ends, sizes.bracket(deviation), kind)))
+        brackets.append((deviation, place_mark(ground, ends, _sizes_of_bracket(canvas, deviation), kind)))
     labels = sorted(chart.shown_labels, key=lambda label: label.side, reverse=True)  # filled dots over outlined ones
     points = [_at(frame, one.point.percent, one.point.angle_deg) for one in labels]
+    sizes = [(canvas.width_of(one.text, is_first=True) + size.halo, size.line) for one in labels]
     are_above = [_is_higher(chart, one) for one in labels]
-    boxes = place_labels(ground, points, [sizes.label(one) for one in labels], are_above, sizes.dot)
+    boxes = place_labels(ground, points, sizes, are_above, size.dot)
     return Layout(hidden, tuple(brackets), tuple(zip(labels, boxes, strict=True)))
+
+
+def _sizes_of_bracket(canvas: Canvas, bracket: Deviation) -> list[Size]:
+    """Of its words with one line, and with both."""
+    first, line = canvas.width_of(bracket.words, is_first=True), canvas.lengths.line
+    more = [(max(first, canvas.width_of(bracket.more, is_first=False)), 2 * line)] if bracket.more else []
+    return [(first, line), *more]
+
+
+def _size_of_hidden(canvas: Canvas, hidden: HiddenCurve) -> Size:
+    words = max(canvas.width_of(line, is_first=row == 0) for row, line in enumerate(lines_of_hidden(hidden)))
+    return canvas.lengths.hidden_margins + words, canvas.lengths.hidden_height
+
+
+def lines_of_hidden(hidden: HiddenCurve) -> list[str]:
+    return list(filter(None, [verdict_alone(Verdict.NOT_REPORTED), hidden.reason]))
 
 
 def _is_higher(chart: StrideChart, label: CurveLabel) -> bool:
@@ -147,7 +154,7 @@ def _is_higher(chart: StrideChart, label: CurveLabel) -> bool:
     return bool(angle_deg >= np.mean(own[[max(at - PEAK_WIDTH, 0), min(at + PEAK_WIDTH, 100)]]))
 
 
-def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Ground:
+def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> ChartGround:
     """What a chart draws before its marks."""
     curves = [line_of(frame, PERCENT, curve.angle_deg) for curve in (*chart.beside, *chart.curves) if curve.is_known]
     edges = []
@@ -157,7 +164,7 @@ def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Gr
             line_of(frame, PERCENT, edge) for edge in (band.mean_deg - reach, band.mean_deg, band.mean_deg + reach)
         ]
     uprights = [float(frame.x(curve.toe_off_percent)) for curve in toe_offs_in_order(chart.curves, 0)]
-    return Ground(frame, curves, edges, uprights, list(taken))
+    return ChartGround(frame, curves, edges, uprights, list(taken))
 
 
 def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatArray:
@@ -170,13 +177,9 @@ def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatAr
 
 
 def place_mark(
-    ground: Ground, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
+    ground: ChartGround, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
 ) -> MarkPlace:
-    """The place that covers least for the bar between two `ends` (x, y), and for the words beside it.
-
-    `sizes` are width and height of the words with one line, two lines and so on; as many are kept as have room. The
-    place is taken from then on.
-    """
+    """Place the bar's words where they cover least; `sizes` (w, h) by number of lines, as many as fit."""
     top, bottom = sorted(y for _, y in ends)
     usual_x = float(ground.frame.x(usual_percent))
     all_x = map(float, ground.frame.x(CANDIDATES_PERCENT))
@@ -200,13 +203,13 @@ def place_mark(
 
 
 def place_labels(
-    ground: Ground, points: Sequence[tuple[float, float]], sizes: Sequence[Size], are_above: Sequence[bool], dot: float
+    ground: ChartGround,
+    points: Sequence[tuple[float, float]],
+    sizes: Sequence[Size],
+    are_above: Sequence[bool],
+    dot: float,
 ) -> list[Box | None]:
-    """The room of each label beside its point that covers least: inside the frame, over nothing that is there.
-
-    The higher of two curves has its label above its point or level with it, the other beneath. None where there is no
-    room near the point.
-    """
+    """Place each label by its point, inside the frame and where it covers least; None where there is no room."""
     frame = ground.frame
     inside = Box(frame.left, frame.top, frame.right, frame.bottom)
     dots = [Box(x, y, x, y).grown(dot) for x, y in points]
@@ -230,7 +233,7 @@ def place_labels(
     return found
 
 
-def place_hidden(ground: Ground, size: Size) -> Box:
+def place_hidden(ground: ChartGround, size: Size) -> Box:
     """The room for the box of a curve that is hidden; top left where all are alike."""
     frame, (width, height) = ground.frame, size
     best, least = Box(frame.left, frame.top, frame.left + width, frame.top + height), np.inf
@@ -263,7 +266,7 @@ def _rooms(frame: Frame, bar_x: float, top: float, bottom: float, size: tuple[fl
                 yield words
 
 
-def _cost_of_bar(ground: Ground, bar_x: float, ends: Sequence[tuple[float, float]], usual_x: float) -> float:
+def _cost_of_bar(ground: ChartGround, bar_x: float, ends: Sequence[tuple[float, float]], usual_x: float) -> float:
     top, bottom = sorted(y for _, y in ends)
     bar = Box(bar_x - CLEAR, top, bar_x + CLEAR, bottom)
     cost = PER_LENGTH_AWAY * abs(bar_x - usual_x) + UNREADABLE * any(map(bar.overlaps, ground.taken))
@@ -283,7 +286,7 @@ def _cost_of_bar(ground: Ground, bar_x: float, ends: Sequence[tuple[float, float
     return float(cost)
 
 
-def _cost_of_words(ground: Ground, words: Box, bar_x: float, ends: Sequence[tuple[float, float]]) -> float:
+def _cost_of_words(ground: ChartGround, words: Box, bar_x: float, ends: Sequence[tuple[float, float]]) -> float:
     room = words.grown(CLEAR)
     cost = ground.covered(room) + PER_UPRIGHT * sum(room.left < x < room.right for x in ground.uprights)
     cost += WORDS_AT_RIGHT * (words.left > bar_x)

@@ -106,8 +106,7 @@ def toe_offs_in_order(curves: Sequence[StrideCurve], decimals: int) -> list[Stri
 def curves_of_walk(
     cycles: Mapping[Side, SideCycle], not_reported: frozenset[Side], *, has_strides: bool
 ) -> tuple[StrideCurve, ...]:
-    """Each side of one walk, its mean unless that is not reported; strides where they are asked for, or where the
-    mean is not reported and they are few."""
+    """Give each side's mean unless not reported; strides if asked for, or if few and the mean is not reported."""
     curves = []
     for side, cycle in cycles.items():
         is_not_reported, n = side in not_reported, cycle.mean.n

@@ -1,49 +1,24 @@
 """`gaitwright agree`: what a session and an optical system differ by, in the shape of Table 1."""
 
 import argparse
-import json
 from datetime import datetime
 from pathlib import Path
 
-from app.cli.library import add_key_arguments, read_place, session_place
-from app.storage.layout import default_folder
+from app.cli.places import read_place
+from app.exports.result_folder import written_beside
+from app.importing.untrusted_files import read_foreign_reference
+from app.reports.agreement.folder import write_agreement
+from app.reports.agreement.printed import printed
+from app.reports.agreement.study import study_of
+from app.reports.agreement.tables import FORMAT, SUMMARY
 from app.system.logs import version_of
 from app.system.progress import Report
+from app.system.tables import is_free, read_json
+from core.analysis import analyse
 from devices.files.refusal import FileRefusedError, one_line
 
-REPORT = "agreement.pdf"  # as app.reports.agreement.folder has it, whose imports take long
-MOST_SUMMARY_BYTES = 10_000_000
 
-
-def add_agree_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "Compare the angles, events and stride lengths of a session with an optical system. Its clock and signs are "
-        "found from the rates."
-    )
-    parser.add_argument(
-        "session",
-        metavar="SESSION",
-        type=session_place,
-        help="the session folder, results with their session inside, or library:ID",
-    )
-    parser.add_argument(
-        "--reference",
-        metavar="FILE",
-        type=Path,
-        action="append",
-        required=True,
-        help="CSV with time_s and left_knee ... in degrees, OpenSim .mot, C3D, or Visual3D's text; to be given again "
-        "for each further file",
-    )
-    parser.add_argument(
-        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
-    )
-    add_key_arguments(parser)
-    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of the agreement to write")
-    parser.add_argument("--no-report", action="store_true", help=f"write no {REPORT}")
-
-
-def agree(args: argparse.Namespace, report: Report) -> list[str]:
+def run(args: argparse.Namespace, report: Report) -> list[str]:
     """Write the agreement and give the lines for the terminal.
 
     Raises
@@ -53,14 +28,7 @@ def agree(args: argparse.Namespace, report: Report) -> list[str]:
     OSError
         The agreement cannot be written.
     """
-    from app.exports.result_folder import written_beside
-    from app.importing.untrusted_files import read_foreign_reference
-    from app.reports.agreement.folder import write_agreement
-    from app.reports.agreement.printed import printed
-    from app.reports.agreement.study import study_of
-    from core.analysis import analyse
-
-    check_agreement_place(args.out)
+    _check_place(args.out)
     files = []
     for path in args.reference:
 
@@ -84,7 +52,7 @@ def agree(args: argparse.Namespace, report: Report) -> list[str]:
     ]
 
 
-def check_agreement_place(out: Path) -> None:
+def _check_place(out: Path) -> None:
     """See whether an agreement may stand at `out`: nothing is there, or only an agreement.
 
     Raises
@@ -92,17 +60,9 @@ def check_agreement_place(out: Path) -> None:
     FileRefusedError
         Something else is there.
     """
-    from app.reports.agreement.tables import FORMAT, SUMMARY
-
-    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
+    if is_free(out):
         return
-    summary = out / SUMMARY
-    try:
-        is_one = summary.stat().st_size <= MOST_SUMMARY_BYTES
-        is_one = is_one and json.loads(summary.read_text(encoding="utf-8")).get("format") == FORMAT
-    except (OSError, ValueError, AttributeError, RecursionError):
-        is_one = False
-    if not is_one or any(out.rglob("session.toml")):
+    if read_json(out / SUMMARY, FORMAT) is None or any(out.rglob("session.toml")):
         raise FileRefusedError(
             str(out), "this already exists and is not a comparison with a reference", "Choose another --out"
         )

@@ -9,51 +9,29 @@ import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
-from app.cli.library import add_key_arguments, opened_library
-from app.storage.layout import DATABASE_VARIABLE, default_folder, own_folder
+from app.cli.arguments import ADDRESS
+from app.cli.library import opened_library
+from app.storage.clinic.handing_over import count_waiting
+from app.storage.clinic.joining import join, new_station, prepare_server
+from app.storage.clinic.moving import (
+    BEFORE,
+    Moved,
+    bring_back,
+    give_up_bringing_back,
+    give_up_moving,
+    move_to_server,
+)
+from app.storage.clinic.station import driver_url, shown_address
+from app.storage.layout import DATABASE_VARIABLE
+from app.storage.opened import OpenedLibrary, held_alone
+from app.storage.stored import LibraryError
 from app.system.progress import Report
-
-if TYPE_CHECKING:
-    from app.storage.clinic.moving import Moved
-    from app.storage.opened import OpenedLibrary
-
-ADDRESS = "postgresql://USER@SERVER/DATABASE"
+from devices.files.refusal import FileRefusedError
 
 
-def add_clinic_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "Share one library between the stations of a clinic: rows on PostgreSQL, recordings in a place all reach."
-    )
-    actions = parser.add_subparsers(title="what to do", metavar="ACTION", dest="action", required=True)
-    prepare = actions.add_parser("prepare", help="make or update tables and roles on the server, as its owner")
-    _add_database(prepare)
-    move = actions.add_parser("move", help="take a library from its folder to the server; the folder becomes a station")
-    _add_library(move, own_folder())
-    _add_database(move)
-    move.add_argument(
-        "--journals", metavar="PLACE", help="the place of the recordings: a folder, or s3://BUCKET/FOLDER"
-    )
-    move.add_argument("--give-up", action="store_true", help="work on with a folder whose move was broken off")
-    join = actions.add_parser("join", help="make this computer a station of the library on the server")
-    join.add_argument(
-        "library", metavar="FOLDER", type=Path, nargs="?", default=default_folder(), help="the station's folder, new"
-    )
-    _add_database(join)
-    join.add_argument("--journals", metavar="PLACE", default="", help="the place, where it has another name here")
-    back = actions.add_parser("back", help="bring the library back into a folder, or copy it there")
-    _add_library(back)
-    back.add_argument("--out", metavar="FOLDER", type=Path, help="the library's new folder")
-    back.add_argument(
-        "--copy", action="store_true", help="leave the library on the server: a backup that opens by itself"
-    )
-    back.add_argument("--give-up", action="store_true", help="open the server again after bringing back was broken off")
-    status = actions.add_parser("status", help="say where the library is, and what waits here to be handed over")
-    _add_library(status)
-
-
-def clinic(args: argparse.Namespace, progress: Report) -> Iterable[str]:
+def run(args: argparse.Namespace, progress: Report) -> Iterable[str]:
     """Do one of these and give the lines for the terminal.
 
     Raises
@@ -67,9 +45,6 @@ def clinic(args: argparse.Namespace, progress: Report) -> Iterable[str]:
 
 
 def _prepare(args: argparse.Namespace, _progress: Report) -> list[str]:
-    from app.storage.clinic.joining import prepare_server
-    from app.storage.clinic.station import shown_address
-
     with _refusing(DATABASE_VARIABLE):
         address = _address(args)
         prepare_server(address)
@@ -81,10 +56,6 @@ def _prepare(args: argparse.Namespace, _progress: Report) -> list[str]:
 
 
 def _move(args: argparse.Namespace, progress: Report) -> list[str]:
-    from app.storage.clinic.joining import new_station
-    from app.storage.clinic.moving import BEFORE, give_up_moving, move_to_server
-    from app.storage.clinic.station import shown_address
-
     if args.give_up:
         with _refusing(str(args.library)):
             give_up_moving(args.library)
@@ -101,17 +72,12 @@ def _move(args: argparse.Namespace, progress: Report) -> list[str]:
 
 
 def _join(args: argparse.Namespace, _progress: Report) -> list[str]:
-    from app.storage.clinic.joining import join
-    from app.storage.clinic.station import shown_address
-
     with _refusing(str(args.library)):
         station = join(args.library, _address(args), args.journals)
     return [f"{args.library} is a station of {shown_address(station.database)}. Open Gaitwright and log in as always."]
 
 
 def _back(args: argparse.Namespace, progress: Report) -> list[str]:
-    from app.storage.clinic.moving import bring_back, give_up_bringing_back
-
     if args.give_up:
         with _held(args) as opened, _refusing(str(args.library)):
             give_up_bringing_back(opened.library.database)
@@ -130,9 +96,6 @@ def _back(args: argparse.Namespace, progress: Report) -> list[str]:
 
 
 def _status(args: argparse.Namespace, _progress: Report) -> list[str]:
-    from app.storage.clinic.handing_over import count_waiting
-    from app.storage.clinic.station import shown_address
-
     with opened_library(args) as opened:
         station = opened.library.station
         if station is None or opened.shared is None:
@@ -146,33 +109,13 @@ def _status(args: argparse.Namespace, _progress: Report) -> list[str]:
 
 
 @contextmanager
-def _held(args: argparse.Namespace) -> Iterator["OpenedLibrary"]:
+def _held(args: argparse.Namespace) -> Iterator[OpenedLibrary]:
     """Open the library for being moved, and nobody else meanwhile."""
-    from app.storage.opened import held_alone
-
     with opened_library(args, is_to_be_moved=True) as opened, held_alone(opened.folder):
         yield opened
 
 
-def _add_library(parser: argparse.ArgumentParser, folder: Path | None = None) -> None:
-    parser.add_argument(
-        "library",
-        metavar="LIBRARY",
-        type=Path,
-        nargs="?",
-        default=folder or default_folder(),
-        help="the library's folder (your own)",
-    )
-    add_key_arguments(parser)
-
-
-def _add_database(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--database", metavar="ADDRESS", default="", help=f"{ADDRESS}, else {DATABASE_VARIABLE}")
-
-
 def _address(args: argparse.Namespace) -> str:
-    from app.storage.clinic.station import driver_url, shown_address
-
     address = args.database or os.environ.get(DATABASE_VARIABLE, "")
     if not address:
         _refuse("--database", "no server is named", f"Give --database {ADDRESS}, or set {DATABASE_VARIABLE}")
@@ -192,7 +135,7 @@ def _place(args: argparse.Namespace) -> str:
     return args.journals if "://" in args.journals else str(Path(args.journals).resolve())
 
 
-def _counted(moved: "Moved") -> str:
+def _counted(moved: Moved) -> str:
     missing = f" ({moved.missing} were missing before)" if moved.missing else ""
     counts = (("patient", moved.patients), ("session", moved.sessions), ("recording", moved.recordings))
     patients, sessions, recordings = (f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts)
@@ -200,17 +143,12 @@ def _counted(moved: "Moved") -> str:
 
 
 def _refuse(where: str, what: str, remedy: str) -> NoReturn:
-    from devices.files.refusal import FileRefusedError
-
     raise FileRefusedError(where, what, remedy)
 
 
 @contextmanager
 def _refusing(where: str) -> Iterator[None]:
     """Turn a library's refusals into the one line that the command line prints."""
-    from app.storage.stored import LibraryError
-    from devices.files.refusal import FileRefusedError
-
     try:
         yield
     except LibraryError as refusal:

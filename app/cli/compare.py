@@ -5,22 +5,21 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from app.cli.library import add_key_arguments, read_place, session_place
-from app.storage.layout import default_folder
+from app.cli.arguments import DIFFERENCES
+from app.cli.places import read_place
+from app.exports.result_folder import written_beside
+from app.summary.comparison import Comparison
+from app.summary.conditions import Part
+from app.summary.differences import comparisons_of, rows_of, without_common_condition, write_differences
+from app.summary.visits import WalkedVisit, conditions_in_words
 from app.system.progress import Report
-from core.parameters import BY_COLUMN
+from core.analysis import analyse
+from core.results import Analysis
+from core.session import Session
+from core.verdicts.measurement_error import Difference
 from devices.files.refusal import FileRefusedError, one_line
 
-if TYPE_CHECKING:
-    from app.summary.comparison import Comparison
-    from app.summary.conditions import Part
-    from core.results import Analysis
-    from core.session import Session
-    from core.verdicts.measurement_error import Difference
-
-DIFFERENCES = "differences.csv"
 FLAGS = {  # as core.verdicts.measurement_error has them
     "exceeds_error": "beyond measurement error",
     "inside_error": "may be measurement error",
@@ -32,43 +31,7 @@ DAGGER = "†"
 DAGGER_MEANS = f"{DAGGER} The error rests on a figure of which the source could not be checked."
 
 
-def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "List the differences between the conditions of a session, or between sessions, and which of them are inside "
-        "the measurement error."
-    )
-    help_text = (
-        "session folders, results with their session inside, or library:ID; the first is what others differ from"
-    )
-    parser.add_argument("sessions", metavar="SESSION", type=session_place, nargs="+", help=help_text)
-    parser.add_argument(
-        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
-    )
-    add_key_arguments(parser)
-    parser.add_argument(
-        "--limit",
-        metavar="COLUMN=VALUE",
-        type=_limit,
-        action="append",
-        default=[],
-        help="a change that matters, such as knee_range_deg=5: in how many of 10 such measurements it is as large",
-    )
-    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help=f"the folder for {DIFFERENCES}")
-
-
-def _limit(text: str) -> tuple[str, float]:
-    """A column and the least change of it that matters."""
-    column, _, value = text.partition("=")
-    try:
-        limit = float(value)
-    except ValueError:
-        limit = math.nan
-    if column not in BY_COLUMN or not limit > 0:
-        raise argparse.ArgumentTypeError(f"{text!r} is no column of a table with a value above 0, as knee_range_deg=5")
-    return column, limit
-
-
-def compare(args: argparse.Namespace, report: Report) -> list[str]:
+def run(args: argparse.Namespace, report: Report) -> list[str]:
     """Write the table and give the lines for the terminal.
 
     Raises
@@ -78,10 +41,6 @@ def compare(args: argparse.Namespace, report: Report) -> list[str]:
     OSError
         The table cannot be written.
     """
-    from app.exports.result_folder import written_beside
-    from app.summary.differences import comparisons_of, rows_of, without_common_condition, write_differences
-    from core.analysis import analyse
-
     _check_place(args.out)
     visits = []
     for number, place in enumerate(args.sessions):
@@ -112,9 +71,7 @@ def compare(args: argparse.Namespace, report: Report) -> list[str]:
     ]
 
 
-def _not_compared(place: object, visits: "Sequence[tuple[Session, Analysis]]") -> str:
-    from app.summary.visits import WalkedVisit, conditions_in_words
-
+def _not_compared(place: object, visits: Sequence[tuple[Session, Analysis]]) -> str:
     walked = [
         WalkedVisit(f"session {number}", analysis, session.recordings)
         for number, (session, analysis) in enumerate(visits, 1)
@@ -129,9 +86,7 @@ def _check_place(out: Path) -> None:
         raise FileRefusedError(str(out), "this already exists and is not a comparison", "Choose another --out")
 
 
-def _table(comparison: "Comparison", limits: Mapping[str, float]) -> Iterator[str]:
-    from app.summary.differences import rows_of
-
+def _table(comparison: Comparison, limits: Mapping[str, float]) -> Iterator[str]:
     simulated = "SIMULATED. " if comparison.is_simulated else ""
     for _, of_part in groupby(rows_of(comparison), key=lambda row: row.part.letter):
         rows = list(of_part)
@@ -148,14 +103,14 @@ def _table(comparison: "Comparison", limits: Mapping[str, float]) -> Iterator[st
             yield f"  {side:5} {row.parameter:38} {cells} {likely:>18}{mark} {FLAGS[found.judgement]}{often}"
 
 
-def _often(found: "Difference", limit: float | None) -> str:
+def _often(found: Difference, limit: float | None) -> str:
     """In how many of 10 such measurements a change is as large as one that matters."""
     if limit is None or not found.is_judged:
         return ""
     return f"; {limit:g} or more in {10 * found.share_of_at_least(limit):.0f} of 10 such measurements"
 
 
-def _named(part: "Part") -> str:
+def _named(part: Part) -> str:
     return f"{part.letter} {one_line(part.name)}"
 
 

@@ -1,6 +1,8 @@
 """Command line for sensors. It lists those that are received, and plays ones that are not there."""
 
+import argparse
 import os
+import sys
 import tempfile
 import threading
 import time
@@ -8,32 +10,32 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from devices.emulators.patient import EmulatedPatient
-    from devices.emulators.transports import Emulation
+from app.system.known_columns import known_columns
+from app.system.progress import Report
+from core.session import RecordingKind
+from devices.catalogue import DRIVERS
+from devices.emulators.patient import EmulatedPatient, EmulatedSensor, session_for
+from devices.emulators.transports import Emulation, PseudoTerminal
+from devices.files.trial import PROGRAMS, PROOFS
+from devices.live import SourceRefusedError
+from devices.search import SearchResult, search, search_streams
+from devices.transport.bluetooth import own_radio
+from devices.transport.ports import MORE_PORTS
 
-EMULATED = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")  # as devices.emulators.patient has them
 MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 
+def run(args: argparse.Namespace, _report: Report) -> Iterator[str]:
+    """List the sensors, or play some until interrupted and say so meanwhile."""
+    if args.emulate:
+        emulate(args.emulate, args.count, args.seconds, lambda line: print(line, flush=True), sys.stdin)
+    else:
+        yield from list_devices(args.streams)
+
+
 def list_devices(streams_in: str = "") -> Iterator[str]:
-    """What is received now, at which port nothing is, how drivers and readers of files were tested; takes a second or
-    two.
-
-    Parameters
-    ----------
-    streams_in
-        By which of this computer's addresses streams are asked for; empty: they are not.
-    """
-    from app.system.known_columns import known_columns
-    from devices.catalogue import DRIVERS
-    from devices.files.trial import PROGRAMS, PROOFS
-    from devices.live import SourceRefusedError
-    from devices.search import SearchResult, search, search_streams
-    from devices.transport.bluetooth import own_radio
-
+    """List received devices, silent ports and drivers' tests; takes 1 to 2 s. `streams_in` empty: no streams."""
     found = search(columns=known_columns(), radio=own_radio())
     if streams_in:
         try:
@@ -69,21 +71,7 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
 def emulate(
     kind: str, count: int, seconds: float, show_message: Callable[[str], None], asked: Iterable[str] = ()
 ) -> None:
-    """Play so many sensors at pseudo-terminals until interrupted or `seconds` are over; reports their ports first.
-
-    Parameters
-    ----------
-    asked
-        Lines, whenever they come, of what the patient is to do; see `MOVEMENTS`.
-
-    Raises
-    ------
-    OSError
-        There are no pseudo-terminals on this system.
-    """
-    from devices.emulators.patient import EmulatedPatient, session_for
-    from devices.transport.ports import MORE_PORTS
-
+    """Emulate sensors at pseudo-terminals, ports first, until `seconds` are over; `asked`: see `MOVEMENTS`."""
     patient = EmulatedPatient(session_for(count))
     with _emulations(patient, kind, count) as emulations:
         places = [emulation.place for emulation in emulations]
@@ -102,9 +90,7 @@ def emulate(
             show_message("Ended.")
 
 
-def _ask(patient: "EmulatedPatient", asked: Iterable[str], show_message: Callable[[str], None]) -> None:
-    from core.session import RecordingKind
-
+def _ask(patient: EmulatedPatient, asked: Iterable[str], show_message: Callable[[str], None]) -> None:
     for line in asked:
         if (kind := MOVEMENTS.get(line.strip())) is not None:
             clip = patient.ask(RecordingKind(kind))
@@ -112,10 +98,7 @@ def _ask(patient: "EmulatedPatient", asked: Iterable[str], show_message: Callabl
 
 
 @contextmanager
-def _emulations(patient: "EmulatedPatient", kind: str, count: int) -> "Iterator[list[Emulation]]":
-    from devices.emulators.patient import EmulatedSensor
-    from devices.emulators.transports import Emulation, PseudoTerminal
-
+def _emulations(patient: EmulatedPatient, kind: str, count: int) -> Iterator[list[Emulation]]:
     with tempfile.TemporaryDirectory(prefix="gaitwright-ports-") as folder:
         emulations: list[Emulation] = []
         try:

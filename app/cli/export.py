@@ -2,50 +2,27 @@
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from app.cli.library import LibrarySession, add_key_arguments, opened_library, session_place
-from app.storage.layout import default_folder
+from app.cli.arguments import LibrarySession
+from app.cli.library import opened_library
+from app.exports.exports import (
+    Format,
+    export_from_folder,
+    export_from_library,
+    preview_from_folder,
+    preview_from_library,
+)
+from app.exports.result_folder import session_of, written_beside
+from app.importing.untrusted_files import read_foreign_session
+from app.storage.pseudonyms import Typed
 from app.system.progress import Report
+from app.system.tables import is_free
+from core.analysis import analyse
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
-if TYPE_CHECKING:
-    from app.storage.pseudonyms import Typed
 
-FORMATS = ("xlsx", "c3d", "mot", "fhir", "bids-motion")  # as app.exports.exports has them, whose import takes long
-
-TYPED = ("device", "aids", "surface", "conditions", "changes")  # as app.storage.pseudonyms has it
-
-
-def add_export_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "Analyse a session and write its results for other programs: a spreadsheet, C3D, OpenSim's mot, a FHIR R4 "
-        "bundle; or what its sensors measured, as BIDS-Motion. Names are taken away unless identity is asked for."
-    )
-    help_text = "the session folder, results with their session inside, or library:ID"
-    parser.add_argument("session", metavar="SESSION", type=session_place, help=help_text)
-    parser.add_argument(
-        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
-    )
-    add_key_arguments(parser)
-    parser.add_argument("--as", dest="formats", metavar="FORMAT,...", required=True, help=", ".join(FORMATS))
-    parser.add_argument(
-        "--keep",
-        metavar="WHAT,...",
-        default="",
-        help=f"without identity, what was typed freely and leaves all the same: {', '.join(TYPED)}",
-    )
-    parser.add_argument("--identified", action="store_true", help="leave code, notes, operator and dates as they are")
-    where = parser.add_mutually_exclusive_group(required=True)
-    where.add_argument("--out", metavar="OUT", type=Path, help="an empty or new folder")
-    where.add_argument(
-        "--preview", action="store_true", help="write nothing; say all that would leave without identity"
-    )
-
-
-def export(args: argparse.Namespace, report: Report) -> list[str]:
+def run(args: argparse.Namespace, report: Report) -> list[str]:
     """Write the formats asked for and give the lines for the terminal.
 
     Raises
@@ -55,22 +32,15 @@ def export(args: argparse.Namespace, report: Report) -> list[str]:
     OSError
         The files cannot be written.
     """
-    from app.exports.exports import Format, export_from_folder, export_from_library
-    from app.exports.result_folder import written_beside
-    from app.importing.untrusted_files import read_foreign_session
-    from app.reports.patient.report_file import session_of
-    from app.storage.pseudonyms import Typed
-    from core.analysis import analyse
-
-    formats = [Format(name) for name in _chosen("--as", args.formats, FORMATS, "is no format")]
-    kept = [Typed(name) for name in _chosen("--keep", args.keep, TYPED, "is not among what is typed")]
+    formats = [Format(name) for name in _chosen("--as", args.formats, tuple(Format), "is no format")]
+    kept = [Typed(name) for name in _chosen("--keep", args.keep, tuple(Typed), "is not among what is typed")]
     if args.identified and (kept or args.preview):
         raise FileRefusedError(
             "--identified", "data that identify the patient are exported unchanged", "Omit --keep and --preview"
         )
     if args.preview:
         return _preview(args, kept)
-    if args.out.exists() and not (args.out.is_dir() and not any(args.out.iterdir())):
+    if not is_free(args.out):
         raise FileRefusedError(
             str(args.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
         )
@@ -91,13 +61,7 @@ def export(args: argparse.Namespace, report: Report) -> list[str]:
 
 
 def _chosen(option: str, stated: str, known: Sequence[str], what: str) -> list[str]:
-    """The words of an option, each once.
-
-    Raises
-    ------
-    FileRefusedError
-        One is not known.
-    """
+    """Split an option into its words, each once; raises FileRefusedError for an unknown one."""
     names = list(dict.fromkeys(filter(None, stated.split(","))))
     for name in names:
         if name not in known:
@@ -105,12 +69,8 @@ def _chosen(option: str, stated: str, known: Sequence[str], what: str) -> list[s
     return names
 
 
-def _preview(args: argparse.Namespace, kept: "Sequence[Typed]") -> list[str]:
+def _preview(args: argparse.Namespace, kept: Sequence[Typed]) -> list[str]:
     """Lines with all that would leave beside the figures; raises as `export`."""
-    from app.exports.exports import preview_from_folder, preview_from_library
-    from app.importing.untrusted_files import read_foreign_session
-    from app.reports.patient.report_file import session_of
-
     if isinstance(args.session, LibrarySession):
         with opened_library(args) as opened:
             rows = preview_from_library(opened, args.session.id, kept)

@@ -1,14 +1,13 @@
-"""Output of subcommands on a terminal, and the arguments they take from its line."""
+"""Output of subcommands on a terminal."""
 
-import argparse
-import math
 import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, TextIO
+from collections.abc import Iterator, Sequence
+from typing import Any, TextIO
 
-if TYPE_CHECKING:
-    from core.findings import Finding
+from app.wording.findings import place, sentence
+from core.findings import Finding, Severity
+from devices.files.refusal import one_line
 
 
 class Progress:
@@ -40,9 +39,6 @@ class Progress:
     def __call__(self, share: float, what: str) -> None:
         if self._is_interrupted:
             raise KeyboardInterrupt
-        from app.wording.findings import place
-        from devices.files.refusal import one_line
-
         percent = min(100, round(100 * share))
         text = f"{percent:3d} % {place(one_line(what))}"
         if self._is_terminal:
@@ -52,41 +48,9 @@ class Progress:
             self._next_percent = percent // 10 * 10 + 10
 
 
-def finding_lines(findings: "Sequence[Finding]", lowest: str) -> Iterator[str]:
+def finding_lines(findings: Sequence[Finding], lowest: str) -> Iterator[str]:
     """Give those that are at least as grave as `lowest`, each in a line."""
-    from app.wording.findings import sentence
-    from core.findings import Severity
-    from devices.files.refusal import one_line
-
     severities = list(Severity)
     for finding in findings:
         if severities.index(finding.severity) >= severities.index(Severity(lowest)):
             yield f"- {one_line(sentence(finding))}"
-
-
-def one_of(words: Sequence[str]) -> Callable[[str], str]:
-    """An argument that is one of `words`; another is refused."""
-
-    def check(text: str) -> str:
-        if text not in words:
-            raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(words)}")
-        return text
-
-    return check
-
-
-def positive(text: str) -> float:
-    """An argument that is a positive number.
-
-    Raises
-    ------
-    ArgumentTypeError
-        It is none.
-    """
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not 0 < number < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
-    return number

@@ -4,53 +4,29 @@ import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from app.cli.library import add_key_arguments, opened_library
-from app.storage.layout import default_folder
+from app.cli.arguments import LIBRARY
+from app.cli.library import opened_library
+from app.cohort.batch.found import FoundSession, find_sessions
+from app.cohort.repeatability.people import CONDITION, StudyPeople
+from app.cohort.repeatability.study import FIGURES, TABLE, Read, StudyResult, study, write_figures
+from app.cohort.repeatability.table import RepeatabilityRow, rows_of
+from app.exports.result_folder import written_beside
+from app.importing.untrusted_files import read_foreign_session
 from app.system.progress import Report
+from app.wizard.resuming import sessions_of_condition
+from core.analysis import analyse
+from core.results import Analysis
+from core.session import Session
 from devices.files.refusal import FileRefusedError, one_line
 
-if TYPE_CHECKING:
-    from app.cohort.batch.found import FoundSession
-    from app.cohort.repeatability.study import Read, StudyResult
-    from app.cohort.repeatability.table import RepeatabilityRow
-
-LIBRARY = "library"  # the word, as batch has it
 TITLES = {
     "attached_again": "Standard deviation of one mean, sensors attached again",
     "between_legs": "Left against right: 95 of 100 healthy people differ by less",
 }
 
 
-def add_repeatability_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "Find by how much repeated measurements of healthy people differ in your clinic, from people whose sensors "
-        "were attached twice: in two sessions of one patient code, or in one session (attached again before a "
-        "recording). Prints each figure with 95 % limits beside the published one. Needs 5 people, 20 are recommended."
-    )
-    parser.add_argument(
-        "folder",
-        metavar="FOLDER|library",
-        type=Path,
-        help="the folder that holds session folders, however deep, or the word library: of the library's sessions "
-        "the walks with the condition repeatability",
-    )
-    parser.add_argument(
-        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
-    )
-    add_key_arguments(parser)
-    parser.add_argument(
-        "--out",
-        metavar="OUT",
-        type=Path,
-        help="the folder for repeatability.json, which the application can use in place of the published figures, and "
-        "repeatability.csv",
-    )
-    parser.set_defaults(stopped="Nothing was written.")
-
-
-def repeatability(args: argparse.Namespace, report: Report) -> Iterator[str]:
+def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
     """Do the study and give the lines for the terminal.
 
     Raises
@@ -60,9 +36,6 @@ def repeatability(args: argparse.Namespace, report: Report) -> Iterator[str]:
     OSError
         OUT cannot be written.
     """
-    from app.cohort.repeatability.study import write_figures
-    from app.exports.result_folder import written_beside
-
     if args.out is not None:
         _check_place(args.out)
     found = _found(args, report)
@@ -75,22 +48,16 @@ def repeatability(args: argparse.Namespace, report: Report) -> Iterator[str]:
     yield f"{where}Research use. Not a medical device."
 
 
-def _found(args: argparse.Namespace, report: Report) -> "StudyResult":
-    from app.cohort.repeatability.people import CONDITION, StudyPeople
-    from app.cohort.repeatability.study import study
-
-    is_library = args.folder == Path(LIBRARY)
+def _found(args: argparse.Namespace, report: Report) -> StudyResult:
+    is_library = args.folder == LIBRARY
     people = StudyPeople(CONDITION if is_library else "")
     with _sessions(args, is_library=is_library) as (sessions, made_by):
         return study(str(args.library if is_library else args.folder), sessions, people, made_by, report)
 
 
 @contextmanager
-def _sessions(args: argparse.Namespace, *, is_library: bool) -> "Iterator[tuple[list[tuple[str, Read]], str]]":
+def _sessions(args: argparse.Namespace, *, is_library: bool) -> Iterator[tuple[list[tuple[str, Read]], str]]:
     if is_library:
-        from app.cohort.repeatability.people import CONDITION
-        from app.wizard.resuming import sessions_of_condition
-
         with opened_library(args) as opened:
             operator = opened.library.operator
             yield sessions_of_condition(opened, CONDITION), operator.code if operator is not None else ""
@@ -98,18 +65,11 @@ def _sessions(args: argparse.Namespace, *, is_library: bool) -> "Iterator[tuple[
         yield [(one.name, _reading(one.folder)) for one in _folders(args)], ""
 
 
-def _folders(args: argparse.Namespace) -> "Iterator[FoundSession]":
-    from app.cohort.batch.found import find_sessions
-
+def _folders(args: argparse.Namespace) -> Iterator[FoundSession]:
     yield from find_sessions(args.folder, args.out if args.out is not None else args.folder / ".none")
 
 
-def _reading(folder: Path) -> "Read":
-    from app.importing.untrusted_files import read_foreign_session
-    from core.analysis import analyse
-    from core.results import Analysis
-    from core.session import Session
-
+def _reading(folder: Path) -> Read:
     def read(report: Report) -> tuple[Session, Analysis]:
         session = read_foreign_session(folder, lambda: report(0.0, str(folder)))
         return session, analyse(session, progress=report)
@@ -119,15 +79,11 @@ def _reading(folder: Path) -> "Read":
 
 def _check_place(out: Path) -> None:
     """See whether a study may stand at `out`: nothing is there, or only a study."""
-    from app.cohort.repeatability.study import FIGURES, TABLE
-
     if out.exists() and not (out.is_dir() and {path.name for path in out.iterdir()} <= {FIGURES, TABLE}):
         raise FileRefusedError(str(out), "this already exists and is not a study", "Choose another --out")
 
 
-def _lines(found: "StudyResult") -> Iterator[str]:
-    from app.cohort.repeatability.table import rows_of
-
+def _lines(found: StudyResult) -> Iterator[str]:
     own = found.own
     simulated = "SIMULATED. " if own.is_simulated else ""
     preliminary = " Preliminary: fewer than 10 people." if own.is_preliminary else ""
@@ -140,7 +96,7 @@ def _lines(found: "StudyResult") -> Iterator[str]:
     yield from ("", *(f"- {note}" for note in found.notes)) if found.notes else ()
 
 
-def _of_row(row: "RepeatabilityRow") -> str:
+def _of_row(row: RepeatabilityRow) -> str:
     own, published = row.number(row.found.value), row.number(row.published)
     return _line(f"{row.title}, {row.unit}", own, row.limits, str(row.found.people), published, row.verdict)
 

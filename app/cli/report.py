@@ -4,41 +4,17 @@ import argparse
 from datetime import datetime
 from pathlib import Path
 
-from app.cli.library import add_key_arguments, read_place, session_place
-from app.cli.progress import one_of
-from app.storage.layout import default_folder
+from app.cli.places import read_place
+from app.reports.patient.document import make_report
+from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
+from app.summary.request import MAX_CONDITIONS, AnalysedVisit, ReportRequest
 from app.system.logs import version_of
 from app.system.progress import Report
-
-PAPERS = ("a4", "letter")  # as app.reports.patient.request has them, whose import takes long
-
-
-def add_report_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Analyse a session and make its report: one walk, or up to three conditions beside each other."
-    parser.add_argument(
-        "session",
-        metavar="SESSION|OUT",
-        type=session_place,
-        help="the session folder, results with their session inside, or library:ID",
-    )
-    parser.add_argument(
-        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
-    )
-    add_key_arguments(parser)
-    parser.add_argument("--out", metavar="FILE.pdf", type=Path, required=True, help="the report to write")
-    parser.add_argument(
-        "--walk",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="a walk to show; up to three are compared, the last is shown (of each condition, most strides)",
-    )
-    parser.add_argument("--earlier", metavar="SESSION", type=session_place, help="a visit to compare with")
-    parser.add_argument("--comment", metavar="FILE", type=Path, help="the clinician's words, a text in UTF-8")
-    parser.add_argument("--paper", type=one_of(PAPERS), default=PAPERS[0], metavar="PAPER", help=" | ".join(PAPERS))
+from core.analysis import analyse
+from devices.files.refusal import FileRefusedError
 
 
-def make(args: argparse.Namespace, progress: Report) -> list[str]:
+def run(args: argparse.Namespace, progress: Report) -> list[str]:
     """Write the report and give the line for the terminal.
 
     Raises
@@ -48,12 +24,6 @@ def make(args: argparse.Namespace, progress: Report) -> list[str]:
     OSError
         The report cannot be written.
     """
-    from app.reports.patient.document import make_report
-    from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
-    from app.summary.request import MAX_CONDITIONS, AnalysedVisit, ReportRequest
-    from core.analysis import analyse
-    from devices.files.refusal import FileRefusedError
-
     check_report_place(args.out)
     if len(args.walk) > MAX_CONDITIONS:
         what = f"{len(args.walk)} walks are too many for one report"
@@ -77,8 +47,6 @@ def make(args: argparse.Namespace, progress: Report) -> list[str]:
 
 
 def _comment(file: Path | None) -> str:
-    from devices.files.refusal import FileRefusedError
-
     if file is None:
         return ""
     try:

@@ -20,16 +20,15 @@ BETWEEN_WALKS = datetime.timedelta(minutes=2)
 
 def record_visit(visit: SimulatedVisit) -> Session:
     """Let the patient move, and give what the sensors send, with what was stated about it."""
-    from devices.simulation.replay import labelled  # scipy takes a second that home is not to wait for
-    from devices.simulation.walker import simulate
+    from devices.simulation.replay import moved  # scipy, which home is not to wait for
 
-    moved = labelled(simulate(visit.settings).session)
+    session = moved(visit.settings)
     recordings = tuple(
         _reported(recording, visit.reported.get(recording.name), visit.started + number * BETWEEN_WALKS)
-        for number, recording in enumerate(moved.recordings)
+        for number, recording in enumerate(session.recordings)
     )
     return replace(
-        moved,
+        session,
         recordings=recordings,
         started=visit.started.isoformat(timespec="seconds"),
         operator=BY,
@@ -45,27 +44,13 @@ def record_beside(visit: SimulatedVisit) -> Session:
 
 
 def add_patients(opened: OpenedLibrary, patients: tuple[SimulatedPatient, ...]) -> None:
-    """Add them without their visits, the first of them last: of equal ones the list has the latest first.
-
-    Raises
-    ------
-    LibraryError
-        A code is taken.
-    """
+    """Add patients without visits, the first last, as lists show the latest first; raises LibraryError."""
     for patient in reversed(patients):
         opened.library.patients.create(patient.details)
 
 
 def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> UUID:
-    """Write what was recorded into journals of the library, as the next visit of its patient.
-
-    That its report was written is only noted, not done: nobody is to look for a file.
-
-    Raises
-    ------
-    LibraryError, JournalRefusedError, OSError
-        As of `import_session`.
-    """
+    """Write a visit into the library's journals, its report only noted; raises as `import_session`."""
     known = opened.library.patients.find(visit.code)
     reported = replace(session, patient=known.details) if known is not None else session
     session_id = import_session(opened, reported, _silent, visit.code, limits=visit.limits).session_id

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 from uuid import UUID
 
+from app.storage.audit import about
 from app.wording.translation import tr
 
 if TYPE_CHECKING:
@@ -11,8 +12,6 @@ if TYPE_CHECKING:
 
 def deleted_by(opened: "OpenedLibrary", patient_id: UUID, session_id: UUID | None = None) -> str:
     """The operator who deleted a patient, or this one session; empty where nobody did."""
-    from app.storage.audit import about  # not before a library is open
-
     library = opened.library
     if library.patients.get(patient_id).deleted_at is not None:
         subject = about("patient", patient_id)

@@ -4,15 +4,17 @@ import datetime
 from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import QEvent, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPalette
-from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QDialog, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QDialog, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.editing.question import EditQuestion
 from app.editing.words import by_words, field_word, value_words
 from app.storage.three_way import MergeConflict
-from app.theme.current import current_theme
+from app.theme.current import on_theme, px
+from app.theme.ground import Ground, set_ground
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.version_cell import VersionCell
 from app.wording.translation import tr
@@ -26,10 +28,7 @@ MINE, THEIRS = 0, 1
 class EditDialog(QDialog):
     """Nothing is chosen to begin with, so that Enter pressed a moment too late decides nothing.
 
-    Signals
-    -------
-    settled
-        The fields of which our own value is to hold, a frozenset; closed with Escape, there are none.
+    `settled`: the fields of which our own value is to hold, a frozenset; closed with Escape, there are none.
     """
 
     settled = Signal(object)
@@ -54,7 +53,7 @@ class EditDialog(QDialog):
             wraps=True,
         )
         self._table = QWidget()
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._table)
         self._note = Text(tr("Choose a value in each line with the arrow keys."), tone="ink2", wraps=True)
         self.save = Button(tr("Save choice"), ButtonKind.PRIMARY, key=tr("Enter"))
         self.leave = Button(tr("Keep theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
@@ -65,7 +64,7 @@ class EditDialog(QDialog):
         self.leave.clicked.connect(self.reject)
         self.rejected.connect(self._on_rejected)
         self._follow()
-        self._fit()
+        on_theme(self._fit)
         self.cells[0][MINE].setFocus()
 
     @property
@@ -75,11 +74,6 @@ class EditDialog(QDialog):
             return None
         lines = zip(self._question.contests, self.cells, strict=True)
         return frozenset(contest.field for contest, (mine, _) in lines if mine.isChecked())
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._fit()
 
     def sizeHint(self) -> QSize:
         return self.size()
@@ -100,35 +94,18 @@ class EditDialog(QDialog):
 
     def _build(self) -> None:
         rows = QVBoxLayout(self._table)
-        rows.setContentsMargins(0, 0, 0, 0)
         for contest, pair, cells in zip(self._question.contests, self._pairs, self.cells, strict=True):
-            rows.addWidget(Text(field_word(contest.field), weight=MEDIUM, wraps=True))
-            for cell in cells:
-                pair.addWidget(cell, 1)
-            rows.addLayout(pair)
-        rows.addStretch(1)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+            lay_out(pair, *((cell, 1) for cell in cells), spacing=8)
+            lay_out(rows, Text(field_word(contest.field), weight=MEDIUM, wraps=True), pair)
+        lay_out(rows, 1, margins=0, spacing=8)
         self._scroll.setAccessibleName(tr("Conflicting changes"))
-        self._scroll.setWidget(self._table)
-        buttons = QHBoxLayout()
-        buttons.addWidget(self._note, 1)
-        buttons.addWidget(self.leave)
-        buttons.addWidget(self.save)
-        column = QVBoxLayout(self)
-        column.addWidget(self._title)
-        column.addWidget(self._lead)
-        column.addWidget(self._scroll, 1)
-        column.addLayout(buttons)
+        buttons = lay_out(QHBoxLayout(), (self._note, 1), self.leave, self.save)
+        column = lay_out(QVBoxLayout(self), self._title, self._lead, (self._scroll, 1), buttons)
+        lay_out(column, margins=(EDGE, 20, EDGE, 20), spacing=12)
+        set_ground(self, Ground("surface", radius=0, inset=0))
 
     def _fit(self) -> None:
         """Be as large as the window allows, and no larger than needed; where it is narrow, stack the two versions."""
-        px, colours = current_theme().px, current_theme().colours
-        palette = self.palette()
-        palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
-        self.setPalette(palette)
         window = self._parent.window().size()
         width = min(px(WIDTH), window.width() - px(EDGE))
         inside = width - 2 * px(EDGE)
@@ -139,13 +116,9 @@ class EditDialog(QDialog):
         direction = QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight
         for pair in self._pairs:
             pair.setDirection(direction)
-            pair.setSpacing(px(8))
         rows, column = self._table.layout(), self.layout()
         assert rows is not None
         assert column is not None
-        rows.setSpacing(px(8))
-        column.setContentsMargins(px(EDGE), px(20), px(EDGE), px(20))
-        column.setSpacing(px(12))
         around = column.totalHeightForWidth(width) - self._scroll.sizeHint().height()
         self.resize(width, min(around + rows.totalHeightForWidth(inside) + px(2), window.height() - px(EDGE)))
 

@@ -24,24 +24,12 @@ Answer = TypeVar("Answer")
 
 
 class EditedRecord(QObject, Generic[T]):
-    """Edits of a `T` of the library. What is edited differs by two methods, `_called` and `_choose`.
+    """Edits of a `T` of the library. What is edited differs by two methods, `_called` and `_choose`."""
 
-    Signals
-    -------
-    changed
-        What is on the screen, or how far it is saved.
-    refused
-        What the library refused, and what to do.
-    merged
-        What another station changed of the same meanwhile, in two sentences.
-    asked
-        An EditQuestion: what both changed.
-    """
-
-    changed = Signal()
-    refused = Signal(str, str)
-    merged = Signal(str, str)
-    asked = Signal(object)
+    changed = Signal()  # what is on the screen, or how far it is saved
+    refused = Signal(str, str)  # what the library refused, and what to do
+    merged = Signal(str, str)  # what another station changed of the same meanwhile, in two sentences
+    asked = Signal(object)  # an EditQuestion: what both changed
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)

@@ -22,14 +22,9 @@ class SessionRecord(EditedRecord[StoredSession]):
     """`reported` is what is on the screen, `stored` what the library holds; the second follows the first.
 
     There is no session before `begin` or `resume`; what is stated before waits for it.
-
-    Signals
-    -------
-    held
-        The library holds all that is stated; `changed` follows.
     """
 
-    held = Signal()
+    held = Signal()  # the library holds all that is stated; `changed` follows
 
     def __init__(self, controller: LibraryController, patient: PatientRecord, parent: QObject) -> None:
         super().__init__(controller, parent)
@@ -91,10 +86,7 @@ class SessionRecord(EditedRecord[StoredSession]):
             self._change(_stated_fields(self.reported, self.comment, limits, self._confirmed))
 
     def set_comment(self, comment: str, shown: str) -> None:
-        """Take the clinician's words, which were typed where `shown` stood.
-
-        Words that stood here still to be saved, or were refused, are nobody else's.
-        """
+        """Take the comment typed where `shown` stood; own unsaved or refused words are no conflict."""
         self._change({"comment": comment}, {"comment": shown} if shown != self.comment else {})
 
     def confirm_comment(self, comment: str, shown: str) -> None:
@@ -165,10 +157,7 @@ class SessionRecord(EditedRecord[StoredSession]):
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        """Words stay as they were typed, and are saved with the next; so do limits before there is a session.
-
-        A confirmation does not: what nobody holds is not printed.
-        """
+        """Keep words and limits as typed, saved with the next; drop a confirmation the library does not hold."""
         self._is_busy = False
         details, _, limits, confirmed = _whole(self.stored)
         limits = limits if self.stored is not None else self.limits

@@ -46,10 +46,7 @@ class SessionRecording:
 
 
 def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
-    """Those of one session's recordings that count and have been read, in order of time, as an analysis takes them.
-
-    That sensors were strapped again before one that does not count is noted with the next one that does.
-    """
+    """Give kept, read recordings in time order; a re-strapping before an omitted one passes to the next."""
     found = []
     is_restrapped = False
     for recording in recordings:

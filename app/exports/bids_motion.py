@@ -70,18 +70,7 @@ class BidsChannel:
 
 
 def write_bids(session: Session, folder: Path) -> str:
-    """Write the recordings that were kept as a set of data of one participant, into `folder`, which is new.
-
-    Returns
-    -------
-    str
-        Why nothing was written, in the user's language; empty where something was.
-
-    Raises
-    ------
-    OSError
-        The files cannot be written.
-    """
+    """Write the kept recordings as a BIDS dataset of one participant; give why nothing was written, else ""."""
     held = [one for one in session.recordings if one.is_kept and any(len(block) for block in one.imu.values())]
     if not held:
         return tr("No included recording contains sensor data.")

@@ -53,18 +53,7 @@ HALF_A_FRAME = 0.5 + 1e-6
 
 
 def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
-    """Write one recording's angles and events; time starts at the first row of each file.
-
-    Returns
-    -------
-    str
-        Why there is no file, in the user's language; empty where there is.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write angles and events, time from each file's first row; give why there is no file (translated), or ""."""
     status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.measured}
     joints = [joint for joint, stated in status.items() if stated in REPORTED]
     if not joints and not events_of(recording):

@@ -363,13 +363,7 @@ LETTERED = ("compared_cycles.csv", "visits_cycles.csv")  # whose columns begin w
 
 
 def column_of(file: str, name: str) -> ColumnMeaning:
-    """What a column means.
-
-    Raises
-    ------
-    KeyError
-        No such file has such a column.
-    """
+    """Give a column's meaning; raises KeyError where no such file has such a column."""
     if file in LETTERED and name not in PERCENT:
         letter, _, rest = name.partition("_")
         return KNOWN[file][rest]._replace(definition=f"{KNOWN[file][rest].definition}, of {letter}")
@@ -377,18 +371,7 @@ def column_of(file: str, name: str) -> ColumnMeaning:
 
 
 def write_columns(folder: Path, recordings: list[str]) -> None:
-    """Write what the columns of every table in `folder` mean, as the tables' first lines name them.
-
-    Parameters
-    ----------
-    recordings
-        The folders in it that hold tables too.
-
-    Raises
-    ------
-    OSError
-        A table cannot be read, or this one not written.
-    """
+    """Write the meaning of every column of the tables in `folder` and in its subfolders `recordings`."""
     write_table(HEADER, _rows(folder, recordings), folder / COLUMNS)
 
 

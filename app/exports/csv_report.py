@@ -19,15 +19,7 @@ DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns nee
 
 
 def write_angles(recording: RecordingAnalysis, path: Path) -> None:
-    """Write one recording's angles in degrees, gaps as empty cells, and the phase of each foot in words.
-
-    The samples of an angle that is not reported stay, as evidence; its status marks them in every row.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write one recording's angles in degrees, gaps empty, unreported ones kept with their status."""
     blocks = _angle_blocks(recording)
     first = next(blocks)
     with path.open("wb") as file:

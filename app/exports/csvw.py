@@ -16,18 +16,7 @@ BOOLEANS = ("used", "unverified", "agreed_before", "chosen_before")
 
 
 def write_metadata(folder: Path, recordings: Sequence[str]) -> None:
-    """Write the types and meanings of every table in `folder`, as the tables' first lines name their columns.
-
-    Parameters
-    ----------
-    recordings
-        The folders in it that hold tables too.
-
-    Raises
-    ------
-    OSError
-        A table cannot be read, or this file not written.
-    """
+    """Write types and meanings of the columns of the tables in `folder` and its subfolders `recordings`."""
     found = {"@context": CONTEXT, "tables": list(_tables(folder, recordings))}
     text = json.dumps(found, indent=1, ensure_ascii=False)
     # a folder's name may hold bytes that are no text: what replaces them is an escape of JSON too

@@ -10,7 +10,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from uuid import UUID
 
+from app.exports.bids_motion import FOLDER, write_bids
+from app.exports.fhir_bundle import write_bundle
 from app.exports.folder_pseudonyms import pseudonyms_of_folder
+from app.exports.opensim_motion import write_motion
 from app.exports.pseudonymised import Row, pseudonymised, what_leaves
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
@@ -40,13 +43,7 @@ NEEDED = {Format.XLSX: "openpyxl", Format.C3D: "ezc3d"}  # libraries of the extr
 
 
 def check_formats(formats: Sequence[Format]) -> None:
-    """See whether the libraries that these formats need are there.
-
-    Raises
-    ------
-    FileRefusedError
-        One is not installed.
-    """
+    """Raise FileRefusedError where a library that one of these formats needs is not installed."""
     for required in formats:
         if required in NEEDED and find_spec(NEEDED[required]) is None:
             raise FileRefusedError(
@@ -66,21 +63,8 @@ def export_from_folder(
     kept: Collection[Typed] = (),
     is_identified: bool = False,
 ) -> list[str]:
-    """Write a session that is in no library into `folder`, which is there: each format whole, or not at all.
-
-    Without identity, of what was typed freely only what is `kept` leaves.
-
-    Returns
-    -------
-    list of str
-        What was not written, and why: one sentence each.
-
-    Raises
-    ------
-    FileRefusedError
-        A library is missing, or no format could be written.
-    OSError
-        The files cannot be written.
+    """Write an unstored session into an existing folder, each format whole or not at all; give what failed.
+    Without identity, only freely typed words in `kept` leave. Raises FileRefusedError, OSError.
     """
     check_formats(formats)
     if not is_identified:
@@ -100,23 +84,9 @@ def export_from_library(
     kept: Collection[Typed] = (),
     is_identified: bool = False,
 ) -> list[str]:
-    """Analyse a session of a library and write it; the audit states which formats before anything is written.
-
-    Without identity, of what was typed freely only what is `kept` leaves, and the audit names it.
-
-    Returns
-    -------
-    list of str
-        As `export_from_folder`.
-
-    Raises
-    ------
-    LibraryError
-        There is no such session, or the export cannot be noted.
-    JournalRefusedError
-        A recording cannot be read.
-    FileRefusedError, OSError
-        As in `export_from_folder`.
+    """Analyse and write a session of the library, noted in the audit first; give what failed and why.
+    Without identity, only freely typed words in `kept` leave, and the audit names them.
+    Raises LibraryError, JournalRefusedError, FileRefusedError or OSError.
     """
     check_formats(formats)
     visit = opened.library.sessions.get(session_id)
@@ -142,13 +112,7 @@ def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[
 
 
 def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collection[Typed] = ()) -> list[Row]:
-    """All that `export_from_library` would disclose beside the figures.
-
-    Raises
-    ------
-    LibraryError
-        There is no such session.
-    """
+    """Give all that `export_from_library` discloses besides figures; raises LibraryError."""
     visit = opened.library.sessions.get(session_id)
     reported = replace(
         visit.details, recordings=tuple(one.details for one in visit.recordings if one.state in READ_BACK)
@@ -187,25 +151,20 @@ def _write(session: Session, analysis: Analysis, formats: Sequence[Format], fold
 
 def _write_format(session: Session, analysis: Analysis, required: Format, folder: Path) -> list[str]:
     """Write one format, and give a line for each file that is not written."""
-    # here, not above: two of them need libraries that may be missing
     if required is Format.XLSX:
-        from app.exports.spreadsheet import write_spreadsheet
+        from app.exports.spreadsheet import write_spreadsheet  # openpyxl, which may be missing
 
         write_spreadsheet(session, analysis, folder / SPREADSHEET)
     elif required is Format.FHIR:
-        from app.exports.fhir_bundle import write_bundle
-
         write_bundle(session, analysis, folder / BUNDLE)
     elif required is Format.BIDS:
-        from app.exports.bids_motion import FOLDER, write_bids
-
         why = write_bids(session, folder / FOLDER)
         return [f"{required}: {why}"] if why else []
     else:
         if required is Format.C3D:
-            from app.exports.c3d_angles import write_c3d as write
+            from app.exports.c3d_angles import write_c3d as write  # ezc3d, which may be missing
         else:
-            from app.exports.opensim_motion import write_motion as write
+            write = write_motion
 
         found = {
             one.name: write(one, analysis.is_simulated, _place(one, folder, f"angles.{required}"))

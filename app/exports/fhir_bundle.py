@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from app.exports.figures import SIMULATED, WalkFigure, finite, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
 from app.storage.pseudonyms import AGE
 from app.summary.agreed import agreed_with
 from app.summary.comparison import compare_legs, first_and_second
@@ -41,7 +41,8 @@ SIDES = {
     Side.LEFT: {"system": SNOMED, "code": "7771000", "display": "Left"},
     Side.RIGHT: {"system": SNOMED, "code": "24028007", "display": "Right"},
 }
-ACTIVITY = "http://terminology.hl7.org/CodeSystem/observation-category"
+CATEGORY = "http://terminology.hl7.org/CodeSystem/observation-category"
+ACTIVITY = [{"coding": [{"system": CATEGORY, "code": "activity", "display": "Activity"}]}]
 TEST_DATA = {
     "system": "http://terminology.hl7.org/CodeSystem/v3-ActReason",
     "code": "HTEST",
@@ -50,6 +51,7 @@ TEST_DATA = {
 ABSENT = "http://terminology.hl7.org/CodeSystem/data-absent-reason"
 NOT_REPORTED = {"system": ABSENT, "code": "error", "display": "Error"}
 NOT_PERFORMED = {"system": ABSENT, "code": "not-performed", "display": "Not Performed"}
+SPREAD = "standard deviation between strides"
 ERROR = "half of what the difference of two walks with the sensors left on has to exceed (95 %)"
 YEARS_OLD = {"system": "http://loinc.org", "code": "30525-0", "display": "Age"}
 AGE_REPORTED = re.compile(r"(\d{1,3})(\+?)")
@@ -57,20 +59,13 @@ GENDERS = ("male", "female", "other")
 
 
 def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write one Bundle (JSON).
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write one FHIR Bundle as JSON; raises OSError."""
     text = json.dumps(bundle(session, analysis), indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
 def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
-    """A Bundle of kind collection: the patient, as far as is reported, what was agreed, and an Observation per
-    figure."""
+    """Give a collection Bundle: the patient as reported, the goals agreed, and an Observation per figure."""
     patient_url = _url(session, "patient")
     resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
     resources += [(_url(session, "goal", *goal.key), _goal(goal, patient_url)) for goal in agreed_with(session).held]
@@ -141,7 +136,7 @@ def _goal(goal: Goal, patient_url: str) -> dict[str, Any]:
 def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:
     yield "resourceType", "Observation"
     yield "status", _status(one)
-    yield "category", [{"coding": [{"system": ACTIVITY, "code": "activity", "display": "Activity"}]}]
+    yield "category", ACTIVITY
     yield "code", _code(one.name)
     yield "subject", {"reference": patient_url}
     if when:
@@ -160,12 +155,10 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
     components: list[dict[str, Any]] = []
     if one.side is not None:
         components.append({"code": _code("side"), "valueCodeableConcept": {"coding": [SIDES[one.side]]}})
-    if (sd := finite(one.average.sd)) is not None:
-        quantity = _quantity(sd, unit_of(one.name))
-        components.append({"code": _code("stride_sd", "standard deviation between strides"), "valueQuantity": quantity})
-    if (error := finite(one.average.error)) is not None:
-        quantity = _quantity(error, unit_of(one.name))
-        components.append({"code": _code("error", ERROR), "valueQuantity": quantity})
+    for name, words, value in (("stride_sd", SPREAD, one.average.sd), ("error", ERROR, one.average.error)):
+        if math.isfinite(value):
+            quantity = _quantity(float(value), unit_of(one.name))
+            components.append({"code": _code(name, words), "valueQuantity": quantity})
     if one.strides is not None:
         components.append({"code": _code("strides_used"), "valueInteger": one.strides})
     if components:
@@ -192,7 +185,7 @@ def _between_legs(session: Session, analysis: Analysis, patient_url: str) -> Ite
                 {
                     "resourceType": "Observation",
                     "status": "final" if is_final and found.is_judged else "preliminary",
-                    "category": [{"coding": [{"system": ACTIVITY, "code": "activity", "display": "Activity"}]}],
+                    "category": ACTIVITY,
                     "code": _code(f"{column}_difference", f"{column}, {sides[0]} less {sides[1]}".replace("_", " ")),
                     "subject": {"reference": patient_url},
                     **({"effectiveDateTime": when} if (when := _when(session.started)) else {}),

@@ -11,6 +11,7 @@ import numpy as np
 from app.exports.csv_report import DECIMALS
 from app.summary.averages import Average, averages_of
 from app.summary.status import is_slipped, joint_status, why, why_status
+from app.system.tables import finite
 from core import parameters
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
@@ -58,18 +59,10 @@ def unit_of(name: str) -> str:
 
 
 def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:
-    """Every average over strides, walk by walk: those that are known, not reported, or were not measured.
-
-    What can be read and has no figure all the same, as a peak that no stride has, is no figure.
-    """
+    """Yield every mean over strides by walk, reported or not; without peaks that no stride has."""
     for recording in analysis.recordings:
         if recording.kind is RecordingKind.WALKING:
             yield from (one for one in _of_walk(recording) if one.mean is not None or not one.assessment.is_reported)
-
-
-def finite(value: float) -> float | None:
-    """None for what is not known."""
-    return float(value) if math.isfinite(value) else None
 
 
 def _of_walk(recording: RecordingAnalysis) -> Iterator[WalkFigure]:

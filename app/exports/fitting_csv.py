@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from app.system.tables import write_table
+from app.system.tables import figure_cell, finite, write_table
 from core.body import Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
@@ -31,13 +31,7 @@ OF_MEAN = ("recording", "side", "measure", "n", "mean", "sd", "error", "unverifi
 
 
 def write_fitting_strides(recording: RecordingAnalysis, folder: Path) -> None:
-    """Write `fitting.csv`; without gait it holds its heading only.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write `fitting.csv`; without gait, its heading only; raises OSError."""
     header = ["side", "start_s", *FITTING, "used", *STATUS_OF]
     write_table(header, _strides(recording), folder / PER_STRIDE)
 
@@ -59,13 +53,13 @@ def fitting_of_side(recording: RecordingAnalysis, side: Side) -> dict[str, dict[
     found = {}
     for name in FITTING:
         mean = mean_of_strides(_used(recording, side, name))
-        figures = {
-            "mean": mean.mean,
-            "sd": mean.sd,
-            "error": whisker(name, ComparisonKind.ATTACHED, mean),
+        found[name] = {
+            "mean": finite(mean.mean),
+            "sd": finite(mean.sd),
+            "error": finite(whisker(name, ComparisonKind.ATTACHED, mean)),
+            "n": mean.n,
+            "status": str(assessment_of(recording.verdicts, side, name).verdict),
         }
-        reported: dict[str, Any] = {key: value if math.isfinite(value) else None for key, value in figures.items()}
-        found[name] = {**reported, "n": mean.n, "status": str(assessment_of(recording.verdicts, side, name).verdict)}
     return found
 
 
@@ -77,7 +71,7 @@ def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
         columns = [strides.start_s, *(values_of(recording, side, name) for name in FITTING)]
         status = [str(assessment_of(recording.verdicts, side, name).verdict) for name in STATUS_OF.values()]
         for k, reason in enumerate(strides.reason):
-            cells = [_cell(float(column[k])) for column in columns]
+            cells = [figure_cell(float(column[k])) for column in columns]
             yield [str(side), *cells, "false" if reason else "true", *status]
 
 
@@ -87,7 +81,7 @@ def _row(recording: RecordingAnalysis, side: Side, measure: FittingMeasure) -> l
     error = whisker(name, ComparisonKind.ATTACHED, mean)
     is_unverified = not measure.is_source_read or (math.isfinite(error) and sigma is not None and not sigma.is_verified)
     status = assessment_of(recording.verdicts, side, name)
-    figures = [_cell(mean.mean), _cell(mean.sd), _cell(error)]
+    figures = [figure_cell(mean.mean), figure_cell(mean.sd), figure_cell(error)]
     words = ["true" if is_unverified else "false", str(status.verdict), measure.source, measure.cannot_say]
     return [recording.folder, str(side), name, str(mean.n), *figures, *words]
 
@@ -99,7 +93,3 @@ def _used(recording: RecordingAnalysis, side: Side, name: str) -> FloatArray:
 def _is_measured(recording: RecordingAnalysis, side: Side, measure: FittingMeasure) -> bool:
     joint = joint_of(measure.column, side)
     return joint is None or joint in recording.joints
-
-
-def _cell(value: float) -> str:
-    return f"{value:.5f}" if math.isfinite(value) else ""

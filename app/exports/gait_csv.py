@@ -4,7 +4,6 @@ What may be stated about each figure is beside it, in the columns of status; the
 empty. A curve without a zero keeps its shape: the column of its shape is the curve less its mean.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from app.summary.events import events_of
 from app.summary.status import joint_status
-from app.system.tables import write_table
+from app.system.tables import figure_cell, write_table
 from core.body import Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
@@ -45,13 +44,7 @@ HIP_PEAKS = ("hip_flexion_peak_percent", "hip_extension_peak_percent")
 
 
 def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
-    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait they hold their headings only.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written.
-    """
+    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait, their headings only; raises OSError."""
     for name, (header, rows) in gait_tables(recording).items():
         write_table(header, rows, folder / f"{name}.csv")
 
@@ -70,8 +63,8 @@ def peak_table(recordings: Sequence[RecordingAnalysis]) -> tuple[list[str], list
                 of_hip = hip_peaks_percent(recording, side) if has_hips else []
                 of_hip_status = [_peak_status(recording, hip_of(side))] if has_hips else []
                 for k, reason in enumerate(strides.reason):
-                    cells = [_cell(float(column[k])) for column in columns]
-                    more = [*(_cell(float(column[k])) for column in of_hip), *of_hip_status]
+                    cells = [figure_cell(float(column[k])) for column in columns]
+                    more = [*(figure_cell(float(column[k])) for column in of_hip), *of_hip_status]
                     rows.append([recording.folder, str(side), *cells, "false" if reason else "true", *status, *more])
     figures = [*PEAK_TIMES, *EXCURSIONS_BY_COLUMN]
     header = ["recording", "side", "start_s", *figures, "used", "knee_status", "ankle_status"]
@@ -91,7 +84,7 @@ def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iter
         of_cycles += [f"{joint}_{what}" for what in ("mean_deg", "stride_sd_deg", "n", "shape_deg", "status")]
         of_abduction = ("mean_deg", "stride_sd_deg", "n", "status") if joint.is_hip else ()
         of_cycles += [f"{joint}_abduction_{what}" for what in of_abduction]
-    events = ([_cell(time_s), str(side), event] for time_s, side, event in events_of(recording))
+    events = ([figure_cell(time_s), str(side), event] for time_s, side, event in events_of(recording))
     return {
         "events": (["time_s", "side", "event"], events),
         "strides": (
@@ -114,8 +107,8 @@ def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
         of_more = [str(found.verdict) for found in _assessments_of_hips(recording, side)] if more else []
         for k, reason in enumerate(strides.reason):
             used = "false" if reason else "true"
-            cells = [*(_cell(float(column[k])) for column in columns), used, str(reason), *status]
-            yield [str(side), *cells, *(_cell(float(column[k])) for column in more), *of_more]
+            cells = [*(figure_cell(float(column[k])) for column in columns), used, str(reason), *status]
+            yield [str(side), *cells, *(figure_cell(float(column[k])) for column in more), *of_more]
 
 
 def _more_of_strides(recording: RecordingAnalysis) -> tuple[str, ...]:
@@ -151,8 +144,8 @@ def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[
     for percent in range(POINTS if joints else 0):
         row = [str(percent)]
         for joint, (height, sd, n, shape, status) in zip(joints, curves, strict=True):
-            row += [_cell(float(height[percent])), _cell(float(sd[percent])), str(n)]
-            row += [_cell(float(shape[percent])), status]
+            row += [figure_cell(float(height[percent])), figure_cell(float(sd[percent])), str(n)]
+            row += [figure_cell(float(shape[percent])), status]
             row += abductions[joint][percent] if joint in abductions else []
         yield row
 
@@ -162,8 +155,4 @@ def _abduction_cells(recording: RecordingAnalysis, side: Side) -> list[list[str]
     found, stated = abduction_curve(recording, side), assessment_of(recording.verdicts, side, "hip_abduction_peak_deg")
     mean_deg, sd_deg = np.rad2deg(found.mean), np.rad2deg(found.sd)
     tail = [str(found.n), str(stated.verdict)]
-    return [[_cell(float(mean_deg[k])), _cell(float(sd_deg[k])), *tail] for k in range(POINTS)]
-
-
-def _cell(value: float) -> str:
-    return f"{value:.5f}" if math.isfinite(value) else ""
+    return [[figure_cell(float(mean_deg[k])), figure_cell(float(sd_deg[k])), *tail] for k in range(POINTS)]

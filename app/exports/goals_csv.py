@@ -3,12 +3,11 @@
 Who agreed on a goal and what was typed about it is in the library and in an identified export alone.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 
 from app.summary.conditions import Part
 from app.summary.goals import GoalFigure, of_part
-from app.system.tables import typed_cell
+from app.system.tables import finite, typed_cell
 from core.goals import AgreedGoals
 from core.parameters import unit_of
 from core.results import Analysis, RecordingAnalysis
@@ -39,10 +38,7 @@ def goals_of_walk(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoa
 
 
 def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | float | bool | None]:
-    """A goal and what was measured of it, by the names of the table; None where there is none.
-
-    Of a goal that was not agreed before the day nothing is stated but the value.
-    """
+    """Give a goal and its measured figure by table column; one agreed too late has standing NOT_JUDGED."""
     goal, is_before = found.goal, found.goal in agreed.reported
     return {
         "measure": goal.column,
@@ -53,8 +49,8 @@ def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | floa
         "agreed": goal.agreed.isoformat(),
         "until": goal.until.isoformat() if goal.until is not None else None,
         "agreed_before": is_before,
-        "value": found.value if math.isfinite(found.value) else None,
-        "error": found.error if math.isfinite(found.error) else None,
+        "value": finite(found.value),
+        "error": finite(found.error),
         "status": str(found.verdict),
         "standing": str(found.standing if is_before else GoalStanding.NOT_JUDGED),
     }

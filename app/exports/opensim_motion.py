@@ -50,20 +50,8 @@ class MotionPart:
 
 
 def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
-    """Write one recording's angles, a row per row of angles.csv that is known, in as many files as it takes.
-
-    OpenSim stops reading at what is no number. So short gaps are bridged, and at others the file ends and another one
-    begins, `angles_1.mot` and so on.
-
-    Returns
-    -------
-    str
-        Why there is no file, in the user's language; empty where there is.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    """Write one recording's known angles as .mot files; give why there is none (translated), else "".
+    OpenSim stops at NaN, so short gaps are bridged; at others another file begins (`angles_1.mot`).
     """
     measured = [joint for joint in COORDINATES if joint in recording.measured]
     joints = [joint for joint in measured if joint_status(recording, joint) in WITH_HEIGHT]

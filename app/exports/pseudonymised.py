@@ -24,10 +24,7 @@ Row = tuple[str, str | float | int | None]
 def pseudonymised(
     pseudonyms: Pseudonyms, patient_id: UUID, session: Session, analysis: Analysis, kept: Collection[Typed] = ()
 ) -> tuple[Session, Analysis]:
-    """Both with our names for patient, recordings and sensors, and without findings, which may quote what was typed.
-
-    Of what was typed freely only what is `kept` stays.
-    """
+    """Replace names of patient, recordings and sensors; drop findings and all free text except `kept`."""
     other = pseudonyms.session(patient_id, session, kept)
     pairs = list(zip(session.recordings, other.recordings, strict=True))
     names = {old.name: new.name for old, new in pairs}

@@ -19,7 +19,7 @@ from app.exports.fitting_csv import fitting_means, write_fitting_strides
 from app.exports.gait_csv import peak_table, write_gait
 from app.exports.goals_csv import GOALS, goal_rows
 from app.exports.goals_csv import HEADER as GOAL_COLUMNS
-from app.exports.summary import MOST_BYTES, read_summary, write_summary
+from app.exports.summary import FORMAT, write_summary
 from app.exports.timed_csv import HEADER as TIMED_COLUMNS
 from app.exports.timed_csv import TIMED, timed_rows
 from app.summary.agreed import agreed_with
@@ -37,7 +37,7 @@ from app.summary.differences import (
 )
 from app.summary.targets import HEADER as TARGET_COLUMNS
 from app.summary.targets import TARGETS, target_rows
-from app.system.tables import write_table
+from app.system.tables import MOST_BYTES, is_free, read_json, write_table
 from core.results import Analysis
 from core.session import Session
 from devices.files.refusal import FileRefusedError
@@ -61,15 +61,7 @@ TAKEN = tuple(
 
 
 def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
-    """Write every table of an analysis and its summary into `folder`, which is there.
-
-    Raises
-    ------
-    FileRefusedError
-        A recording's folder would stand where one of these files or the session is.
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write every table of an analysis and its summary into `folder`; raises FileRefusedError or OSError."""
     for recording in analysis.recordings:
         if PurePosixPath(recording.folder).parts[:1] in TAKEN:
             what = f"its folder {recording.folder} has the name of one of the results"
@@ -93,13 +85,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
 
 
 def describe_tables(analysis: Analysis, folder: Path) -> None:
-    """Write what the columns of the tables of an analysis mean; again, where a table was added since.
-
-    Raises
-    ------
-    OSError
-        A table cannot be read, or one of these files not written.
-    """
+    """Write the meanings of the tables' columns, again after a table was added; raises OSError."""
     recordings = [recording.folder for recording in analysis.recordings]
     write_columns(folder, recordings)
     write_metadata(folder, recordings)
@@ -116,52 +102,49 @@ def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> No
 
 
 def check_place(out: Path, session: Path) -> None:
-    """See whether the results of `session` may stand at `out`.
-
-    Raises
-    ------
-    FileRefusedError
-        `out` lies inside the session, holds other recordings, or is something else than an analysis.
-    """
+    """Raise FileRefusedError where the results of `session` may not stand at `out`."""
     out, session = out.resolve(), session.resolve()
     if out == session or session in out.parents:
         what = "this lies inside the session, which stays as it was recorded"
         raise FileRefusedError(str(out), what, "Choose a folder outside the session for --out")
-    if _is_free(out):
+    if is_free(out):
         return
-    if read_summary(out / SUMMARY) is None:
+    if read_json(out / SUMMARY, FORMAT) is None:
         raise FileRefusedError(str(out), "this already exists and is not an analysis", "Choose another --out")
     _refuse_recordings(out, out / OWN_SESSION if session == out / OWN_SESSION else None)
 
 
 def check_demonstration_place(out: Path) -> None:
-    """See whether a demonstration may stand at `out`: nothing is there, or only a demonstration.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there.
-    """
+    """Raise FileRefusedError where anything but a demonstration is at `out`."""
     out = out.resolve()
-    if _is_free(out):
+    if is_free(out):
         return
-    summary = read_summary(out / SUMMARY)
+    summary = read_json(out / SUMMARY, FORMAT)
     if summary is None or summary.get("simulated") is not True or not _is_simulated(out / OWN_SESSION):
         raise FileRefusedError(str(out), "this already exists and is not a demonstration", "Choose another --out")
     _refuse_recordings(out, out / OWN_SESSION)
 
 
-@contextmanager
-def written_beside(out: Path, *, keeps_session: bool = False, within: Path | None = None) -> Iterator[Path]:
-    """Give a folder to write into, and put it in the place of `out` when all is written.
-
-    Whatever is raised inside leaves `out` as it was. With `keeps_session` the recordings in `out` stay in it.
-    `within`: a folder of the same disk to write in until then, in place of the one that holds `out`.
+def session_of(place: Path) -> Path:
+    """Give the session folder of a place: itself, or the recordings inside the results that it holds.
 
     Raises
     ------
-    OSError
-        The folder cannot be made or renamed.
+    FileRefusedError
+        Results without their recordings: there are no angles in them to draw from.
+    """
+    if (place / SUMMARY).is_file() and not (place / SESSION_FILE).is_file():
+        if (place / OWN_SESSION / SESSION_FILE).is_file():
+            return place / OWN_SESSION
+        what = "this holds results without the recordings they were made from"
+        raise FileRefusedError(str(place), what, "Give the session folder instead")
+    return place
+
+
+@contextmanager
+def written_beside(out: Path, *, keeps_session: bool = False, within: Path | None = None) -> Iterator[Path]:
+    """Yield a folder to write into that replaces `out` at the end; an exception leaves `out` as it was.
+    `keeps_session`: recordings in `out` stay; `within`: a folder of the same disk to write in meanwhile.
     """
     out = out.resolve()
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -190,10 +173,6 @@ def _exchange(out: Path, new: Path, old: Path, kept: list[str]) -> None:
         if old.exists() and not out.exists():
             old.rename(out)
         raise
-
-
-def _is_free(out: Path) -> bool:
-    return not out.exists() or (out.is_dir() and not any(out.iterdir()))
 
 
 def _refuse_recordings(out: Path, own: Path | None) -> None:

@@ -7,7 +7,6 @@ typed is text whatever it begins with, so that it is never worked out as a formu
 
 import datetime
 import io
-import math
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,9 +16,10 @@ from openpyxl import Workbook
 from openpyxl.cell import Cell, WriteOnlyCell
 from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 from openpyxl.styles import Font
+from openpyxl.utils import get_column_letter
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
-from app.exports.figures import SIMULATED, finite, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
 from app.exports.gait_csv import gait_tables
 from app.exports.pseudonymised import what_is_stated
 from app.summary.agreed import agreed_with
@@ -28,6 +28,7 @@ from app.summary.condition_figures import condition_figures
 from app.summary.conditions import conditions_of
 from app.summary.differences import HEADER, difference_cells, legs_table, rows_along_chain
 from app.summary.status import NOT_REPORTED, all_that_is_stated, why
+from app.system.tables import finite
 from app.wording.alignment import since_in_words
 from app.wording.findings import sentence
 from app.wording.translation import PURPOSE
@@ -47,13 +48,7 @@ SHOWN = "0.00###"  # of the digits that a cell holds
 
 
 def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write one workbook (Office Open XML).
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write one workbook (Office Open XML); raises OSError."""
     book = Workbook(write_only=True)
     book.properties.creator, book.properties.created = "gaitwright", NO_TIME
     _sheet(book, "About", ["what", "value"], _about(session, analysis))
@@ -115,7 +110,7 @@ def _conditions(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
         for one in condition_figures(part):
             is_reported = one.verdict is not Verdict.NOT_REPORTED
             mean: Value = one.found.mean if is_reported else NOT_REPORTED
-            figures: list[Value] = [mean, *(_finite(value) for value in (one.found.sd, one.error))]
+            figures: list[Value] = [mean, finite(one.found.sd), finite(one.error)]
             side = "both" if one.side is None else str(one.side)
             strides = one.found.n if is_reported else None
             yield [part.name, walks, side, one.column, *figures, unit_of(one.column), strides, str(one.verdict)]
@@ -129,10 +124,6 @@ def _compared(session: Session, analysis: Analysis) -> dict[str, tuple[list[str]
         rows = rows_along_chain(Comparison(Contrast.CONDITIONS, parts))
         found["Differences"] = list(HEADER), list(map(difference_cells, rows))
     return {title: table for title, table in found.items() if table[1]}
-
-
-def _finite(value: float) -> Value:
-    return value if math.isfinite(value) else None
 
 
 def _joined(analysis: Analysis, name: str) -> tuple[list[str], Iterable[list[Value]]]:
@@ -185,9 +176,9 @@ def _sheet(book: Workbook, title: str, header: Sequence[str], rows: Iterable[Seq
     sheet = book.create_sheet(title)
     sheet.freeze_panes = "A2"
     table = list(rows)  # strides and events: thousands of rows, where angles are millions and stay in CSV
-    for number, name in enumerate(header):
-        longest = max((len(text) for row in table if isinstance(text := row[number], str)), default=0)
-        sheet.column_dimensions[_letters(number)].width = min(max(len(name), longest, NARROWEST) + 2, WIDEST)
+    for number, name in enumerate(header, start=1):
+        longest = max((len(text) for row in table if isinstance(text := row[number - 1], str)), default=0)
+        sheet.column_dimensions[get_column_letter(number)].width = min(max(len(name), longest, NARROWEST) + 2, WIDEST)
     headings = [_text(sheet, name) for name in header]
     for heading in headings:
         heading.font = Font(name="Calibri", size=11, bold=True)
@@ -210,10 +201,6 @@ def _text(sheet: WriteOnlyWorksheet, value: str) -> Cell:
     cell = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub("", value))
     cell.data_type = "s"  # or what begins with = would be a formula
     return cell
-
-
-def _letters(number: int) -> str:
-    return _letters(number // 26 - 1) + chr(65 + number % 26) if number >= 26 else chr(65 + number)
 
 
 def _without_times(workbook: bytes) -> bytes:

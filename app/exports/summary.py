@@ -10,7 +10,6 @@ import numpy as np
 
 from app.exports.fitting_csv import fitting_of_side
 from app.exports.goals_csv import goal_figures, goals_of_walk
-from app.exports.pelvis_summary import summarise_pelvis
 from app.exports.timed_csv import timed_summary
 from app.summary.averages import LegAverages, averages_of
 from app.summary.comparison import compare_legs, first_and_second
@@ -19,6 +18,7 @@ from app.summary.conditions import Part
 from app.summary.differences import likely_figures
 from app.summary.error_figures import error_figures_in_json
 from app.summary.reference_bands import reference_curves
+from app.system.tables import finite
 from app.wording.findings import sentence
 from app.wording.verdicts import gate_sentence
 from core.alignment import alignment_table
@@ -26,6 +26,7 @@ from core.body import Joint, Side, hip_of
 from core.findings import Finding
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 from core.goals import NO_GOALS, AgreedGoals
+from core.hip.results import HipIdentification
 from core.parameters import REGISTRY
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray
@@ -39,48 +40,32 @@ from core.verdicts.quantities import (
 )
 
 FORMAT = "gaitwright-analysis/1"
-MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
 BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
 KINDS = ("knee", "ankle")
+OF_JOINT = (
+    *("axis_proximal", "axis_distal", "centre_proximal_m", "centre_distal_m", "axis_sd_deg", "centre_sd_mm"),
+    *("sign_margin", "clinical_sign", "is_sign_certain", "clinical_sign_margin", "lag_s", "lag_sd_s"),
+    *("hinge_residual_rad_s", "is_hinge", "gyro_bias_proximal_rad_s", "gyro_bias_distal_rad_s"),
+    *("zero", "axis_source", "method"),
+)
 SYMMETRIC = tuple(quantity.column for quantity in REGISTRY if quantity.has_index)
 
 
 def write_summary(
     analysis: Analysis, path: Path, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
 ) -> None:
-    """Write `summary.json`; `recordings` are the session's, whose alignments are reported beside their walks.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write `summary.json`; `recordings` are the session's, for alignments; raises OSError."""
     text = json.dumps(summarise(analysis, recordings, agreed), indent=2, ensure_ascii=False, allow_nan=False)
     # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
-
-
-def read_summary(path: Path) -> dict[str, Any] | None:
-    """Read what `write_summary` wrote; None when there is no such file, or one of another program."""
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            return None
-        summary = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):  # ValueError: no JSON, or not even UTF-8
-        return None
-    is_ours = isinstance(summary, dict) and summary.get("format") == FORMAT
-    return summary if is_ours else None
 
 
 def summarise(
     analysis: Analysis, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
 ) -> dict[str, Any]:
     """Give the content of `summary.json`; `joints` holds each joint's last calibration.
-
-    A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures. One
-    that is a timed test has `timed_test`. Where goals had been agreed by the session's day, each walk has `goals`, by
-    the columns of goals.csv. With `recordings`, `conditions` has the figures of report and screen, over the strides of
-    all walks of a condition.
+    Walks have `alignment` after a prosthesis change, `timed_test`, `goals` if agreed by the session's day.
+    With `recordings`, `conditions` has the report's figures over the strides of all walks of a condition.
     """
     changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
@@ -120,8 +105,8 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     sides = {str(side): _side(side, recording, found.legs[side]) if side in found.legs else {} for side in Side}
     both: dict[str, Any] = dict.fromkeys(BOTH)
     for name, average in found.both.items():
-        both[name], both[f"{name}_status"] = _number(average.mean), str(average.assessment.verdict)
-    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **summarise_pelvis(recording)}
+        both[name], both[f"{name}_status"] = finite(average.mean), str(average.assessment.verdict)
+    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **_of_pelvis(recording)}
     if recording.timed is not None:
         walk["timed_test"] = timed_summary(recording.timed)
     if len(recording.gait) < len(Side):
@@ -130,10 +115,10 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     part = Part("", recording.name, (recording,), analysis.calibrated_for(recording))
     both |= {
         "symmetry_index_percent": {
-            name: _number(symmetry_index_percent(*(found.legs[side].of[name].mean for side in (one, other))))
+            name: finite(symmetry_index_percent(*(found.legs[side].of[name].mean for side in (one, other))))
             for name in SYMMETRIC
         },
-        "curve_difference_deg": {kind: _number(_difference_deg(recording, kind)) for kind in KINDS},
+        "curve_difference_deg": {kind: finite(_difference_deg(recording, kind)) for kind in KINDS},
         "side_difference": {name: _side_difference(part, name, pair) for name in PARAMETERS if name.endswith("_deg")},
     }
     return walk
@@ -148,12 +133,12 @@ def _side(side: Side, recording: RecordingAnalysis, found: LegAverages) -> dict[
     of_hips: dict[str, Any] = {}
     for name, average in found.of.items():
         into = of_hips if name in OF_HIPS else figures
-        into[f"{name}_mean"], into[f"{name}_sd"] = _number(average.mean), _number(average.sd)
+        into[f"{name}_mean"], into[f"{name}_sd"] = finite(average.mean), finite(average.sd)
         if name not in OF_HIPS:
-            into[f"{name}_error"] = _number(average.error)
+            into[f"{name}_error"] = finite(average.error)
         into[f"{name}_status"] = str(average.assessment.verdict)
     joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
-    scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
+    scores = {kind: finite(_score_deg(recording, joint)) for kind, joint in joints.items()}
     fitting = fitting_of_side(recording, side)
     return {**figures, "gait_variable_score_deg": scores, "fitting": fitting, **of_hips}
 
@@ -176,19 +161,16 @@ def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
 
 
 def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[str, Any] | None:
-    """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
-
-    None where either side has no such angle, or it is not reported.
-    """
+    """Give an angle's difference of the sides and whether it exceeds the error; None if one has no figure."""
     if not all(part.value(side, name).n for side in sides):
         return None
     found = compare_legs(part, name, sides)
     return {
-        "difference_deg": _number(found.difference),
-        "error_deg": _number(found.error),
+        "difference_deg": finite(found.difference),
+        "error_deg": finite(found.error),
         "verdict": str(found.judgement),
         "error_sources": [str(source) for source in found.sources],
-        **{f"{key}_deg": _number(value) for key, value in likely_figures(found).items()},
+        **{f"{key}_deg": finite(value) for key, value in likely_figures(found).items()},
         "mark": str(found.mark),
     }
 
@@ -212,8 +194,8 @@ def _assessment(found: Assessment) -> dict[str, Any]:
     reasons = [
         {
             "gate": reason.gate,
-            "value": _number(reason.value),
-            "limit": _number(reason.limit),
+            "value": finite(reason.value),
+            "limit": finite(reason.limit),
             "unit": reason.unit,
             "text": gate_sentence(reason),
         }
@@ -227,31 +209,52 @@ def _joints(joints: Mapping[Joint, JointCalibration]) -> dict[str, Any]:
 
 
 def _joint(found: JointCalibration) -> dict[str, Any]:
+    axis_sd, centre_sd = found.axis_sd_rad, found.centre_sd_m
+    scaled = {
+        "axis_sd_deg": None if axis_sd is None else finite(math.degrees(axis_sd)),
+        "centre_sd_mm": None if centre_sd is None else finite(1000 * centre_sd),
+    }
     return {
-        "axis_proximal": _vector(found.axis_proximal),
-        "axis_distal": _vector(found.axis_distal),
-        "centre_proximal_m": _vector(found.centre_proximal_m),
-        "centre_distal_m": _vector(found.centre_distal_m),
-        "axis_sd_deg": _number(found.axis_sd_rad, math.degrees(1)),
-        "centre_sd_mm": _number(found.centre_sd_m, 1000),
-        "sign_margin": _number(found.sign_margin),
-        "clinical_sign": int(found.clinical_sign),
-        "is_sign_certain": bool(found.is_sign_certain),
-        "clinical_sign_margin": _number(found.clinical_sign_margin),
-        "lag_s": _number(found.lag_s),
-        "lag_sd_s": _number(found.lag_sd_s),
-        "hinge_residual_rad_s": _number(found.hinge_residual_rad_s),
-        "is_hinge": bool(found.is_hinge),
-        "gyro_bias_proximal_rad_s": _vector(found.gyro_bias_proximal_rad_s),
-        "gyro_bias_distal_rad_s": _vector(found.gyro_bias_distal_rad_s),
-        "zero": str(found.zero),
-        "axis_source": str(found.axis_source),
-        "method": str(found.method),
+        **{name: scaled[name] if name in scaled else _known(getattr(found, name)) for name in OF_JOINT},
         "from": {
             "standing": found.standing_from,
             "free_motion": found.free_motion_from,
             "walks": list(found.walks_from),
         },
+    }
+
+
+def _of_pelvis(recording: RecordingAnalysis) -> dict[str, Any]:
+    """Give the hips' identification, the clock of both legs, turns, and the pelvis's lean; nothing without a pelvis."""
+    reported: dict[str, Any] = {}
+    if recording.leg_clock is not None:
+        clock = recording.leg_clock
+        reported["leg_clock_offset_s"], reported["leg_clock_sd_s"] = finite(clock.offset_s), finite(clock.sd_s)
+        reported["leg_clock_status"] = str(clock.status)
+    if recording.pelvis is not None:
+        tilt, is_reported = recording.pelvis.tilt_rad, recording.verdicts.pelvis.is_reported
+        known = tilt[np.isfinite(tilt)]
+        reported["pelvis_lean_deg"] = finite(math.degrees(float(known.mean()))) if is_reported and len(known) else None
+        reported["hips"] = {str(joint): _hip(hip.identification) for joint, hip in recording.hips.items()}
+        reported["turns"] = [
+            {"start_s": turn.start_s, "end_s": turn.end_s, "angle_deg": math.degrees(turn.angle_rad)}
+            for turn in recording.turns
+        ]
+    return reported
+
+
+def _hip(found: HipIdentification) -> dict[str, Any]:
+    return {
+        "centre_proximal_m": [float(part) for part in found.centre_proximal_m],
+        "centre_distal_m": [float(part) for part in found.centre_distal_m],
+        "sign_margin": finite(found.margin),
+        "disagreement": finite(found.disagreement),
+        "heading_sd_deg": finite(math.degrees(found.heading_sd_rad)),
+        "is_3d": bool(found.is_3d),
+        "moving_s": finite(found.moving_s),
+        "lag_s": finite(found.lag_s),
+        "centres_apart_m": finite(found.centres_apart_m),
+        "from": {"standing": found.standing_from},
     }
 
 
@@ -265,24 +268,15 @@ def _finding(finding: Finding) -> dict[str, Any]:
     }
 
 
-def _vector(vector: FloatArray | None) -> list[float] | None:
-    """Give a vector as a list; None where any part of it is unknown."""
-    if vector is None or not np.isfinite(vector).all():
-        return None
-    return [float(part) for part in vector]
+def _known(value: FloatArray | bool | float | int | str | None) -> list[float] | float | int | str | None:
+    """What is known of a joint, as JSON can hold it: a vector whole, or not at all."""
+    if isinstance(value, np.ndarray):
+        return [float(part) for part in value] if np.isfinite(value).all() else None
+    return bool(value) if isinstance(value, bool | np.bool_) else _plain(value)
 
 
-def _number(value: float | None, factor: float = 1.0) -> float | None:
-    """Give a figure as JSON can hold it: None where it could not be found or has no bound."""
-    if value is None or not math.isfinite(value):
-        return None
-    return float(value) * factor
-
-
-def _plain(value: float | int | str) -> float | int | str | None:
-    """Give a finding's figure as JSON can hold it, also where it came out of an array."""
+def _plain(value: float | int | str | None) -> float | int | str | None:
+    """Give a figure as JSON can hold it, also where it came out of an array."""
     if isinstance(value, str):
         return str(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    return _number(value)
+    return int(value) if isinstance(value, int | np.integer) else finite(value)

@@ -48,38 +48,35 @@ def _rows(test: TimedTest) -> Iterator[dict[str, str]]:
         "row": "test",
         "number": "1",
         **_span(test.start_s, test.end_s, 0.0),
-        "distance_m": figure(test.distance_m, 3),
+        **_walked(test),
         "sensor_distance_m": figure(test.sensor_distance_m, 3),
-        "speed_m_s": figure(test.speed_m_s, 4),
-        "cadence_steps_min": figure(test.cadence_steps_min, 2),
         "started_by": "key" if test.is_start_by_key else "motion",
         "ended_by": "key" if test.is_end_by_key else "motion",
         "missing": " ".join(str(one) for one in test.missing),
     }
-    for word, parts in (("third", test.thirds), ("lap", test.laps)):
-        for number, part in enumerate(parts, 1):
-            yield {"row": word, "number": str(number), **_part(part, test.start_s)}
-    for number, turn in enumerate(test.turns, 1):
-        angle = {"turn_deg": figure(float(np.rad2deg(turn.angle_rad)), 1)}
-        yield {"row": "turn", "number": str(number), **_span(turn.start_s, turn.end_s, test.start_s), **angle}
-    for number, (start_s, end_s) in enumerate(test.pauses_s, 1):
-        yield {"row": "pause", "number": str(number), **_span(start_s, end_s, test.start_s)}
-    for number, rise in enumerate(test.rises, 1):
-        yield {"row": "rise", "number": str(number), **_span(rise.left_seat_s, rise.upright_s, test.start_s)}
-    for number, stride in enumerate(test.stairs, 1):
-        reported = {"side": str(stride.side), "climb_m": figure(stride.climb_m, 3)}
-        yield {"row": "stair", "number": str(number), **_span(stride.start_s, stride.end_s, test.start_s), **reported}
-    for number, one in enumerate(test.silences, 1):
-        sensor = {"sensor": str(one.site)}
-        yield {"row": "silence", "number": str(number), **_span(one.start_s, one.end_s, test.start_s), **sensor}
+    parts: dict[str, list[tuple[float, float, dict[str, str]]]] = {
+        "third": [(one.start_s, one.end_s, _walked(one)) for one in test.thirds],
+        "lap": [(one.start_s, one.end_s, _walked(one)) for one in test.laps],
+        "turn": [
+            (one.start_s, one.end_s, {"turn_deg": figure(float(np.rad2deg(one.angle_rad)), 1)}) for one in test.turns
+        ],
+        "pause": [(start_s, end_s, {}) for start_s, end_s in test.pauses_s],
+        "rise": [(one.left_seat_s, one.upright_s, {}) for one in test.rises],
+        "stair": [
+            (one.start_s, one.end_s, {"side": str(one.side), "climb_m": figure(one.climb_m, 3)}) for one in test.stairs
+        ],
+        "silence": [(one.start_s, one.end_s, {"sensor": str(one.site)}) for one in test.silences],
+    }
+    for word, rows in parts.items():
+        for number, (start_s, end_s, more) in enumerate(rows, 1):
+            yield {"row": word, "number": str(number), **_span(start_s, end_s, test.start_s), **more}
 
 
-def _part(part: TimedPart, from_s: float) -> dict[str, str]:
+def _walked(one: TimedPart | TimedTest) -> dict[str, str]:
     return {
-        **_span(part.start_s, part.end_s, from_s),
-        "distance_m": figure(part.distance_m, 3),
-        "speed_m_s": figure(part.speed_m_s, 4),
-        "cadence_steps_min": figure(part.cadence_steps_min, 2),
+        "distance_m": figure(one.distance_m, 3),
+        "speed_m_s": figure(one.speed_m_s, 4),
+        "cadence_steps_min": figure(one.cadence_steps_min, 2),
     }
 
 

@@ -70,10 +70,7 @@ def film_height(width: float, *, is_moving: bool) -> float:
 
 
 def paint_frame(painter: QPainter, rect: QRectF, theme: Theme, film: Film, time_s: float, hint: str = "") -> None:
-    """Draw what the film shows at `time_s`, the figure at the left, its words at the right, and how far it is.
-
-    `hint` is shown below: what stops it.
-    """
+    """Draw the film at `time_s`: figure left, words right, progress; `hint`, below, states what stops it."""
     px, scenes = theme.px, SCENES[film]
     number = min(int(time_s / SCENE_S), len(scenes) - 1)
     _paint_ground(painter, rect, theme)

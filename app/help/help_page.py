@@ -15,8 +15,6 @@ from PySide6.QtWidgets import (
     QAbstractButton,
     QBoxLayout,
     QButtonGroup,
-    QFrame,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -24,23 +22,25 @@ from PySide6.QtWidgets import (
 
 from app.help.help_reader import HelpReader
 from app.help.help_topics import Topic, TopicGroup, group_title, markdown_of, plain_words_of, topic_title
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 LIST_WIDTH = 264
+WIDEST = 8_000_000  # Qt's own for "no limit", at 200 %
 ROW = 44
 PADDING = 12
 SHORTEST_SEARCH = 2
 
 
-class HelpPage(Themed):
+class HelpPage(QWidget):
     """Topics at the left, or above where room is short; what is searched for is marked in the text."""
 
     closed = Signal()
@@ -62,7 +62,6 @@ class HelpPage(Themed):
         self.choice.currentIndexChanged.connect(self._on_choice_changed)
         self.search.edited.connect(self._on_search_edited)
         self.back.clicked.connect(self.closed)
-        self._apply_theme()
         self.show_topic(Topic.HOME)
         self.set_compact(is_compact=False)
 
@@ -97,7 +96,9 @@ class HelpPage(Themed):
         top = Qt.AlignmentFlag.AlignTop
         self._side.setAlignment(self.choice, top)
         self._side.setAlignment(self.back, top if is_compact else Qt.AlignmentFlag.AlignLeft)
-        self._apply_theme()
+        scaled(self._row.setContentsMargins, *[16 if is_compact else 24] * 4)
+        scaled(self._beside.setMinimumWidth, 0 if is_compact else LIST_WIDTH)
+        scaled(self._beside.setMaximumWidth, WIDEST if is_compact else LIST_WIDTH)
 
     def focus(self) -> None:
         """Give the focus to the text, so that the keys scroll it."""
@@ -113,30 +114,14 @@ class HelpPage(Themed):
                 super().keyPressEvent(event)
 
     def _build(self) -> None:
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setWidget(self.topics)
+        self._scroll = scrolled(self.topics)
         self._beside = QWidget()
         self._side = QBoxLayout(QBoxLayout.Direction.TopToBottom, self._beside)
-        self._side.setContentsMargins(0, 0, 0, 0)
-        searching = QVBoxLayout()
-        searching.addWidget(self.search)
-        searching.addWidget(self.found)
-        self._side.addLayout(searching)
-        for widget, stretch in (
-            (self._scroll, 1),
-            (self.choice, 0),
-            (self.back, 0),
-        ):
-            self._side.addWidget(widget, stretch)
+        searching = lay_out(QVBoxLayout(), self.search, self.found)
+        lay_out(self._side, searching, (self._scroll, 1), self.choice, self.back, margins=0, spacing=12)
         page = Card(padding=16)
         page.column.addWidget(self.text)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.addWidget(self._beside)
-        self._row.addWidget(page, 1)
+        self._row = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight, self), self._beside, (page, 1), spacing=16)
 
     def _mark(self) -> None:
         """Mark what is searched for, and show at every topic how often it has it."""
@@ -181,18 +166,6 @@ class HelpPage(Themed):
     def _on_choice_changed(self, index: int) -> None:
         self.show_topic(list(Topic)[index])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        margin = px(16 if self._is_compact else 24)
-        self._row.setContentsMargins(margin, margin, margin, margin)
-        self._row.setSpacing(px(16))
-        self._side.setSpacing(px(12))
-        if self._is_compact:
-            self._beside.setMinimumWidth(0)
-            self._beside.setMaximumWidth(16777215)  # Qt's own for "no limit"
-        else:
-            self._beside.setFixedWidth(px(LIST_WIDTH))
-
 
 class _TopicList(QWidget):
     """Groups of topics under their titles. One stop for Tab; the arrows go from topic to topic."""
@@ -204,16 +177,15 @@ class _TopicList(QWidget):
         self.setAccessibleName(tr("Topics"))
         self._group = QButtonGroup(self)
         self._by_topic = {topic: _TopicRow(topic_title(topic)) for topic in Topic}
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(2)
+        column = QVBoxLayout(self)
+        column.setSpacing(2)
         begun = {Topic(group): group for group in TopicGroup}
         for topic, row in self._by_topic.items():
             if topic in begun:
-                self._column.addWidget(_GroupTitle(group_title(begun[topic])))
+                column.addWidget(_GroupTitle(group_title(begun[topic])))
             self._group.addButton(row)
-            self._column.addWidget(row)
-        self._column.addStretch(1)
+            column.addWidget(row)
+        lay_out(column, 1, margins=0)
         self._group.buttonClicked.connect(self._on_clicked)
         self._group.buttonToggled.connect(self._on_toggled)
 
@@ -251,7 +223,7 @@ class _TopicRow(QAbstractButton):
         self.setAutoExclusive(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
         self.show_count(None)
 
     def show_count(self, count: int | None) -> None:
@@ -266,9 +238,6 @@ class _TopicRow(QAbstractButton):
         theme = current_theme()
         width = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())
         return QSize(width + self._count_width() + theme.px(3 * PADDING), theme.px(ROW))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()

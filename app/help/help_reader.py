@@ -2,7 +2,7 @@
 
 import re
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, QTimer, QUrl, Signal
+from PySide6.QtCore import QPointF, QRectF, Qt, QTimer, QUrl, Signal
 from PySide6.QtGui import (
     QColor,
     QFont,
@@ -27,7 +27,7 @@ from PySide6.QtWidgets import QFrame, QTextBrowser, QTextEdit
 
 from app.films.film import Film, duration_s, film_height, paint_frame, paint_stills
 from app.help.help_topics import help_file
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.theme.motion import duration_ms
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.translation import tr
@@ -48,14 +48,9 @@ class HelpReader(QTextBrowser):
 
     A film plays once when its page is opened; Space or a click on it stops it and plays it again. Where less
     motion is asked for its scenes stand side by side instead.
-
-    Signals
-    -------
-    page_required
-        The name of another page that a link leads to.
     """
 
-    page_required = Signal(str)
+    page_required = Signal(str)  # the name of another page that a link leads to
 
     def __init__(self) -> None:
         super().__init__()
@@ -72,7 +67,7 @@ class HelpReader(QTextBrowser):
         self.setOpenLinks(False)  # nothing leads out of this computer
         self.anchorClicked.connect(self._on_link)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def has_marks(self) -> bool:
@@ -316,11 +311,6 @@ class HelpReader(QTextBrowser):
                     under.setBottomBorderStyle(QTextFrameFormat.BorderStyle.BorderStyle_Solid)
                     under.setBottomBorderBrush(QColor(theme.colours.line))
                     cell.setFormat(under)
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
 
     def _apply_theme(self) -> None:
         self.setFont(current_theme().font(BODY))

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
+from PySide6.QtWidgets import QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.home.again.analyse_again_page import AnalyseAgainPage
 from app.home.again.controller import AnalysingAgain
@@ -27,26 +27,28 @@ from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
 from app.summary.course_words import NextKind, NextStep
 from app.system.settings import Scheme, Settings
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW
+from app.widgets.lay_out import lay_out
 from app.widgets.rail_row import RailForm, RailRow, StepState
+from app.widgets.reading_area import scrolled
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
-from app.widgets.themed import Themed
 from app.widgets.toast import Toast
 from app.wording.findings import place
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
+from app.workers.long_work import LongWork
 
 WIDE_FROM = 1800
 PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 
 
-class Home(Themed):
+class Home(QWidget):
     session_requested = Signal(object)  # the StoredPatient of a new session, or None: a new patient
     session_opened = Signal(object)  # UUID
     report_requested = Signal(object)  # UUID of the session
@@ -81,7 +83,8 @@ class Home(Themed):
         self._build()
         self._connect()
         self._go_to(self.page)
-        self._apply_theme()
+        scaled(self._banner_row.setContentsMargins, 24, 0, 24, 0)
+        on_theme(self._fit)
 
     @property
     def settings(self) -> SettingsController:
@@ -100,8 +103,7 @@ class Home(Themed):
             made = self._again = AnalysingAgain(self._controller, self)
             self._add_page(made.page)
             made.changed.connect(self._show)
-            made.working.connect(self._work)
-            made.progressed.connect(self._on_progressed)
+            self._follow(made)
             made.done.connect(self._on_analysed_again)
             made.table_made.connect(self._on_table_made)
         return self._again
@@ -124,8 +126,7 @@ class Home(Themed):
             made = self._repeatability = Repeatability(self._controller, self)
             self._add_page(made.page)
             made.changed.connect(self._show)
-            made.working.connect(self._work)
-            made.progressed.connect(self._on_progressed)
+            self._follow(made)
             made.done.connect(self._show_repeatability)
             made.chosen.connect(self.patients.read)
         return self._repeatability
@@ -231,9 +232,6 @@ class Home(Themed):
         ):
             page.focus()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
-
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._fit()
@@ -242,29 +240,12 @@ class Home(Themed):
         self._pages = QStackedWidget()
         for page in (self.page, self.importing.page, self.working):
             self._add_page(page)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.notices.rollback)
-        self._banner_row.addWidget(self.notices.away)
-        self._banner_row.addWidget(self.banner)
-        column = QVBoxLayout()
-        column.setSpacing(0)
-        column.addLayout(self._banner_row)
-        column.addWidget(self._pages, 1)
-        column.addWidget(self.filling.strip)
-        column.addWidget(self.bar)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(self.rail)
-        row.addLayout(column, 1)
+        self._banner_row = lay_out(QVBoxLayout(), self.notices.rollback, self.notices.away, self.banner)
+        column = lay_out(QVBoxLayout(), self._banner_row, (self._pages, 1), self.filling.strip, self.bar, spacing=0)
+        lay_out(QHBoxLayout(self), self.rail, (column, 1), margins=0, spacing=0)
 
     def _add_page(self, page: QWidget) -> None:
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setWidget(page)
-        self._pages.addWidget(scroll)
+        self._pages.addWidget(scrolled(page, is_upright=False))
 
     def _connect(self) -> None:
         page = self.page
@@ -272,12 +253,12 @@ class Home(Themed):
         self.patients.refused.connect(self.banner.show_message)
         page.session_opened.connect(self.session_opened)
         page.new_session_requested.connect(self._begin_session)
-        page.new_patient_requested.connect(self._on_new_patient)
+        page.empty.new_patient.clicked.connect(self._on_new_patient)
         page.demonstration_requested.connect(self.demonstration_requested)
-        page.import_requested.connect(self._begin_import)
-        page.computing_requested.connect(self._on_computing_requested)
-        page.panel.analysing_requested.connect(self._begin_again)
-        page.panel.goals_requested.connect(self._begin_goals)
+        page.empty.importing.clicked.connect(self.importing.begin)
+        page.panel.course.computing_requested.connect(self._on_computing_requested)
+        page.panel.analyse_again.triggered.connect(self._begin_again)
+        page.panel.goals.clicked.connect(self._begin_goals)
         page.panel.next_requested.connect(self._take_next)
         page.patient_deleted.connect(self.deleting.patient)
         page.session_deleted.connect(self.deleting.session)
@@ -285,20 +266,18 @@ class Home(Themed):
         self.rail.below_pressed.connect(self._on_below_pressed)
         self.bar.pressed.connect(self._on_bar_pressed)
         self.bar.back_pressed.connect(self._on_back)
-        self.importing.page.code_changed.connect(self._show)
+        self.importing.page.code.edited.connect(self._show)
         self.importing.page.changed.connect(self._show)
-        self.importing.working.connect(self._work)
-        self.importing.progressed.connect(self._on_progressed)
+        self._follow(self.importing)
         self.importing.asked.connect(self._on_import_asked)
         self.importing.left.connect(self._on_import_left)
         self.importing.imported.connect(self.patients.read)
         self.importing.reported.connect(self.banner.show_message)
-        self.working.stop_pressed.connect(self._on_stop)
+        self.working.stop.clicked.connect(self._on_stop)
         self.recovering.recovered.connect(self.patients.read)
-        self.notices.log_in_requested.connect(self.own_library_requested)
+        self.notices.away.acted.connect(self.own_library_requested)
         self.notices.refused.connect(self.banner.show_message)
-        self.computing.working.connect(self._work)
-        self.computing.progressed.connect(self._on_progressed)
+        self._follow(self.computing)
         self.computing.left.connect(self._on_computing_left)
         self.computing.reported.connect(self.banner.show_message)
         self.filling.changed.connect(self.patients.read)
@@ -353,7 +332,6 @@ class Home(Themed):
         if self._goals is not None:
             self._goals.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
-        px = current_theme().px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
 
     def _show(self) -> None:
@@ -388,7 +366,7 @@ class Home(Themed):
             return self.importing.bar
         if self._is_asking:
             return self.questions.bar
-        if self._is_again:
+        if self._again is not None and self.current is self._again.page:
             return self.again.bar
         if self._has_goals:
             return self.goals.bar
@@ -405,10 +383,6 @@ class Home(Themed):
         words = tr("New session for {code}").format(code=patient.details.code)
         begin = BarAction(words, self._begin_session, tr("Enter"), Icon.PLAY)
         return BarState(begin, quiet=(new,), has_back=False)
-
-    @property
-    def _is_again(self) -> bool:
-        return self._again is not None and self.current is self._again.page
 
     @property
     def _has_goals(self) -> bool:
@@ -515,7 +489,7 @@ class Home(Themed):
         if number == PATIENTS:
             self._on_back()
         elif number == IMPORT:
-            self._begin_import()
+            self.importing.begin()
         elif number == QUESTIONS:
             self._go_to(self.questions.page)
             self.questions.begin()
@@ -543,14 +517,15 @@ class Home(Themed):
 
     # what comes in
 
-    def _begin_import(self) -> None:
-        self.importing.begin()
-
     def _on_import_asked(self) -> None:
         self._go_to(self.importing.page)
 
     def _on_import_left(self) -> None:
         self._go_to(self.page)
+
+    def _follow(self, work: LongWork) -> None:
+        work.working.connect(self._work)
+        work.progressed.connect(self._on_progressed)
 
     def _work(self, title: str) -> None:
         self.banner.hide()
@@ -563,17 +538,5 @@ class Home(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_stop(self) -> None:
-        if self.computing.is_working:
-            self.computing.stop()
-        elif self._again is not None and self._again.is_working:
-            self._again.stop()
-        elif self._repeatability is not None and self._repeatability.is_working:
-            self._repeatability.stop()
-        else:
-            self.importing.stop()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
-        self._fit()
-        self.update()
+        works = (self.computing, self._again, self._repeatability)
+        next((work for work in works if work is not None and work.is_working), self.importing).stop()

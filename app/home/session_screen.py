@@ -7,28 +7,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSize, Qt, QUrl, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFileDialog,
-    QFrame,
     QHBoxLayout,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
-from app.results.detail_pages import DetailPages
-from app.theme.current import current_theme, px
+from app.results.detail_pages import DetailPages, cannot_write
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import set_ground
 from app.theme.icons import Icon
+from app.widgets.action_bar import BAR_GROUND
 from app.widgets.banner import Banner
 from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
+from app.widgets.lay_out import lay_out
 from app.widgets.page_stack import PageStack
+from app.widgets.reading_area import scrolled
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.body import side_name
 from app.wording.findings import place
 from app.wording.translation import PURPOSE, filled, later, tr
@@ -39,7 +40,7 @@ from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
     from app.results.result_page import ResultPage
-    from app.workers.opening import Opened
+    from app.summary.request import AnalysedVisit
     from core.session import Patient
 
 _log = logging.getLogger(__name__)
@@ -58,7 +59,7 @@ ENDED_EARLY = (
 )
 
 
-class SessionScreen(Themed):
+class SessionScreen(QWidget):
     """A header, a page, an action bar. `set_way_back`: where there is something to go back to."""
 
     left = Signal()
@@ -69,7 +70,7 @@ class SessionScreen(Themed):
         self._background, self._looking, self._comparing, self._saving = (Background(self) for _ in range(4))
         self._has_way_back = False
         self._results: ResultPage | None = None
-        self._opened: Opened | None = None
+        self._opened: AnalysedVisit | None = None
         self._saved_in = Path()
         self._dialog: QFileDialog | None = None
         self.header = Header()
@@ -81,7 +82,7 @@ class SessionScreen(Themed):
         self.bar = _ActionBar()
         self._build()
         self._connect()
-        self._apply_theme()
+        on_theme(self._fit)
         self._show_page(self.empty)
 
     @property
@@ -150,26 +151,12 @@ class SessionScreen(Themed):
         super().resizeEvent(event)
         self._fit()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
-
     def _build(self) -> None:
         for page in (self.empty, self.working):
             self.pages.addWidget(page)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.banner)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.header)
-        column.addLayout(self._banner_row)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setWidget(self.pages)
-        column.addWidget(scroll, 1)
-        column.addWidget(self.bar)
+        banner_row = lay_out(QVBoxLayout(), self.banner, margins=(24, 0, 24, 0))
+        pages = scrolled(self.pages, is_upright=False)
+        lay_out(QVBoxLayout(self), self.header, banner_row, (pages, 1), self.bar, margins=0, spacing=0)
 
     def _connect(self) -> None:
         for page in (self.empty, self.bar):
@@ -177,7 +164,7 @@ class SessionScreen(Themed):
             page.open_demonstration.clicked.connect(self.demonstration_requested)
         self.bar.back.clicked.connect(self.leave)
         self.bar.how_found.clicked.connect(self._on_how_found)
-        self.working.stop_pressed.connect(self.stop)
+        self.working.stop.clicked.connect(self.stop)
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
@@ -222,11 +209,9 @@ class SessionScreen(Themed):
         words = place(what)
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
-    def _on_done(self, opened: "Opened") -> None:
-        from app.summary.request import AnalysedVisit
-
+    def _on_done(self, opened: "AnalysedVisit") -> None:
         if self._results is None:
-            from app.results.result_page import ResultPage
+            from app.results.result_page import ResultPage  # numpy, pyqtgraph
 
             self._results = ResultPage()
             self.pages.addWidget(self._results)
@@ -238,7 +223,7 @@ class SessionScreen(Themed):
             for before, after in pairwise(order):
                 self.setTabOrder(before, after)
         self._opened, session = opened, opened.session
-        self._results.show_visit(AnalysedVisit(session, opened.analysis))
+        self._results.show_visit(opened)
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )
@@ -273,8 +258,6 @@ class SessionScreen(Themed):
         self.behind.show_saved(self._saved_in)
 
     def _on_figures_not_saved(self, error: Exception) -> None:
-        from app.results.diagnostics_controller import cannot_write
-
         if not isinstance(error, OSError):
             _log.error("the figures were not saved", exc_info=error)
         self.banner.show_message(*(f"{stated}." for stated in cannot_write(self._saved_in)))
@@ -288,14 +271,8 @@ class SessionScreen(Themed):
             _log.error("the analysis ended early", exc_info=error)
             self.banner.show_message(*map(tr, ENDED_EARLY))
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
-        self._fit()
-        self.update()
 
-
-class _ActionBar(Themed):
+class _ActionBar(QWidget):
     """The ways on from a result. Where they do not all fit, the demonstration, which has its key, is left out."""
 
     def __init__(self) -> None:
@@ -309,13 +286,12 @@ class _ActionBar(Themed):
         self.how_found = Button(tr("Show calibration"), ButtonKind.QUIET, Icon.SEARCH)
         self._purpose = Text(tr(PURPOSE), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self.back)
-        self._row.addWidget(self.open_folder)
-        self._row.addWidget(self.open_demonstration)
-        self._row.addWidget(self.how_found)
-        self._row.addWidget(self._purpose, 1)
-        self._apply_theme()
+        self._row = lay_out(
+            QHBoxLayout(self), self.back, self.open_folder, self.open_demonstration, self.how_found, (self._purpose, 1)
+        )
+        set_ground(self, BAR_GROUND)
+        scaled(self.setFixedHeight, BAR)
+        self.set_narrow(is_narrow=False)
 
     def show_message(self, note: str) -> None:
         """Say what must be known of the curves, before what the program is for."""
@@ -324,7 +300,9 @@ class _ActionBar(Themed):
     def set_narrow(self, is_narrow: bool) -> None:
         self._is_narrow = is_narrow
         self._purpose.setVisible(not is_narrow)
-        self._apply_theme()
+        side = 16 if is_narrow else 24
+        scaled(self._row.setContentsMargins, side, 0, side, 0)
+        scaled(self._row.setSpacing, 8 if is_narrow else 16)
         self._leave_out()
 
     def minimumSizeHint(self) -> QSize:
@@ -342,21 +320,6 @@ class _ActionBar(Themed):
         needed += [] if self._is_narrow else [px(PURPOSE_WIDTH)]
         room = self.width() - 2 * self._row.contentsMargins().left() - self._row.spacing() * (len(needed) - 1)
         self.open_demonstration.setVisible(sum(needed) <= room)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.surface))
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        painter.drawLine(self.rect().topLeft(), self.rect().topRight())
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        side = px(16 if self._is_narrow else 24)
-        self._row.setContentsMargins(side, 0, side, 0)
-        self._row.setSpacing(px(8 if self._is_narrow else 16))
-        self.setFixedHeight(px(BAR))
-        self.update()
 
 
 def _in_words(patient: "Patient") -> str:

@@ -92,21 +92,8 @@ def key_of(sensor: ImportedSensor) -> str:
 def session_of(
     draft: SessionDraft, kinds: Sequence[RecordingKind | None], sites: Mapping[str, Site | None], day: str = ""
 ) -> Session:
-    """The session that was confirmed.
-
-    Parameters
-    ----------
-    kinds
-        Of each recording; None: it is left out.
-    sites
-        Of each sensor by its key; None: it was not worn on a leg.
-    day
-        Of the session, ISO 8601, where its files do not give it.
-
-    Raises
-    ------
-    FileRefusedError
-        Two sensors at one site, or sensors of one recording that share no stretch of time.
+    """Give the confirmed session; `kinds` None: left out, `sites` None: not on a leg; `day`: ISO 8601.
+    Raises FileRefusedError for two sensors at one site or sensors of a recording without common time.
     """
     session = Session((), started="" if draft.started else day)
     for one, kind in zip(draft.recordings, kinds, strict=True):
@@ -123,13 +110,7 @@ def session_of(
 
 
 def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
-    """The legs that the liveliest recording gives; None where it gives none.
-
-    Parameters
-    ----------
-    worn
-        The keys of the sensors that were worn on the legs, two to six.
-    """
+    """Give the legs found in the liveliest recording from the 2 to 6 `worn` sensor keys; None where none."""
     if len(worn) not in USUAL_SITES:
         return None
     sites = dict(zip(worn, Site, strict=False))  # any: they are only labels here

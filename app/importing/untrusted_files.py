@@ -7,26 +7,16 @@ A file can at most end that process. Folders that this program has just written 
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from core.session import Session
-    from devices.files.limited_reader import Columns, LimitedReader, Waiting
-    from devices.files.references.trial import ReferenceFile
-    from devices.files.trial import Gathered, ImportedTrial
+from core.session import Session
+from devices.files.limited_reader import Columns, LimitedReader, LimitedReading, Waiting
+from devices.files.references.trial import ReferenceFile
+from devices.files.session_folder import read_session, write_session
+from devices.files.trial import Gathered, ImportedTrial
 
 
-def read_foreign_session(folder: Path, waiting: "Waiting") -> "Session":
-    """Read a session folder as `devices.files.session_folder.read_session` does.
-
-    Raises
-    ------
-    FileRefusedError
-        The folder is not what it claims to be, or cannot be read within the limits.
-    """
-    from devices.files.limited_reader import LimitedReading
-    from devices.files.session_folder import read_session
-
+def read_foreign_session(folder: Path, waiting: Waiting) -> Session:
+    """Read as `devices.files.session_folder.read_session`, within limits; raises FileRefusedError."""
     reading = LimitedReading(the_reader(), waiting)
     try:
         return read_session(folder, reading)
@@ -34,83 +24,36 @@ def read_foreign_session(folder: Path, waiting: "Waiting") -> "Session":
         reading.waiting = _nobody_waits  # a large session is read again later, when this is over
 
 
-def write_over_session(session: "Session", folder: Path) -> None:
-    """Write a session folder as `devices.files.session_folder.write_session` does, over one that others may have made.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there.
-    OSError
-        The disk is full or cannot be written to.
-    """
-    from devices.files.limited_reader import LimitedReading
-    from devices.files.session_folder import write_session
-
+def write_over_session(session: Session, folder: Path) -> None:
+    """Write as `devices.files.session_folder.write_session` over an untrusted folder; raises FileRefusedError."""
     write_session(session, folder, LimitedReading(the_reader(), _nobody_waits))
 
 
 def read_foreign_trial(
-    format_name: str, files: Sequence[Path], rate_hz: float | None, waiting: "Waiting"
-) -> "ImportedTrial":
-    """What the files of one trial of another program hold, as its reader in `devices.files` gives it.
-
-    `format_name` empty: recognised by the content.
-
-    Raises
-    ------
-    FileRefusedError
-        The files are not what they should be, or cannot be read within the limits.
-    """
-    from devices.files.limited_reader import LimitedReading
-
+    format_name: str, files: Sequence[Path], rate_hz: float | None, waiting: Waiting
+) -> ImportedTrial:
+    """Read a trial by its reader in `devices.files`; `format_name` empty: by content; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz)
 
 
-def read_foreign_reference(path: Path, waiting: "Waiting") -> "ReferenceFile":
-    """What a file of an optical system holds, as `devices.files.references.reading.read_reference` reads it.
-
-    Raises
-    ------
-    FileRefusedError
-        It is no reference, or cannot be read within the limits.
-    """
-    from devices.files.limited_reader import LimitedReading
-
+def read_foreign_reference(path: Path, waiting: Waiting) -> ReferenceFile:
+    """Read as `devices.files.references.reading.read_reference`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).read_reference(path)
 
 
-def gather_foreign(paths: Sequence[Path], waiting: "Waiting") -> "Gathered":
-    """Which of these files and folders belong together, as `devices.files.gathering.gather` returns them.
-
-    Raises
-    ------
-    FileRefusedError
-        There are too many, or they cannot be looked at within the limits.
-    """
-    from devices.files.limited_reader import LimitedReading
-
+def gather_foreign(paths: Sequence[Path], waiting: Waiting) -> Gathered:
+    """Group files and folders as `devices.files.gathering.gather`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).gather(paths)
 
 
-def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> "tuple[tuple[str, ...], list[Columns]]":
-    """Answer a question over a Parquet, as `devices.files.parquet_questions.answer` does.
-
-    Raises
-    ------
-    FileRefusedError
-        The Parquet cannot be read, or the question cannot be answered within the limits.
-    """
-    from devices.files.limited_reader import LimitedReading
-
+def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
+    """Query as `devices.files.parquet_questions.answer`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), _nobody_waits).ask_parquet(path, sql, is_typed)
 
 
 @cache
-def the_reader() -> "LimitedReader":
+def the_reader() -> LimitedReader:
     """The one process of this program that reads foreign files."""
-    from devices.files.limited_reader import LimitedReader
-
     return LimitedReader()
 
 

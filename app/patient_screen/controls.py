@@ -4,14 +4,15 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.patient_screen.metronome import LEAST, MOST
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import NumberField
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.wording.translation import tr
@@ -32,24 +33,13 @@ def choices() -> tuple[Choice, ...]:
 
 
 class ControlsCard(Card):
-    """No target is proposed: there is none until one is typed. It is of a measure, and stays as the side changes.
+    """No target is proposed: there is none until one is typed. It is of a measure, and stays as the side changes."""
 
-    Signals
-    -------
-    target_set
-        Target, or None where nothing that fits is typed.
-    metronome_pressed
-        Its rate in steps per minute; 0: be silent.
-    full_screen_pressed, close_pressed
-        Of the patient's screen.
-    """
-
-    target_set = Signal(object)
-    metronome_pressed = Signal(int)
-    full_screen_pressed = Signal()
-    close_pressed = Signal()
+    target_set = Signal(object)  # target, or None where nothing that fits is typed
+    metronome_pressed = Signal(int)  # its rate in steps per minute; 0: be silent
 
     def __init__(self) -> None:
+        super().__init__()
         self._typed: dict[TargetMeasure, int] = {}
         self._reasons: Mapping[Choice, str] = {}
         self._is_ticking = False
@@ -68,21 +58,14 @@ class ControlsCard(Card):
         self.full = Button(tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
         self.close_screen = Button(tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
         self._reason, self._wrong = Notice(size=14), Notice(size=14)
-        self._choose, self._set = QBoxLayout(ACROSS), QBoxLayout(ACROSS)
-        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(tr("Patient screen"))
-        self._choose.addWidget(self.measure, 1)
-        self._choose.addWidget(self.side)
+        self._choose = lay_out(QBoxLayout(ACROSS), (self.measure, 1), self.side, spacing=12)
         for field in (self.target, self.rate):
-            self._set.addWidget(field)
-        for button in (self.tick, self.full, self.close_screen):
-            self._set.addWidget(button, 0, Qt.AlignmentFlag.AlignBottom)
-        self._set.insertStretch(3, 1)
-        for row in (self._choose, self._set):
-            self.column.addLayout(row)
-        self.column.addWidget(self._wrong)
-        self.column.addWidget(self._reason)
+            scaled(field.setFixedWidth, FIELD_WIDTH)
+        tick, *others = ((one, 0, Qt.AlignmentFlag.AlignBottom) for one in (self.tick, self.full, self.close_screen))
+        below = lay_out(QHBoxLayout(), self.target, self.rate, tick, 1, *others, spacing=12)
+        lay_out(self.column, self._choose, below, self._wrong, self._reason)
         self.measure.chosen.connect(self._on_chosen)
         self.side.chosen.connect(self._on_chosen)
         self.target.committed.connect(self._on_target_committed)
@@ -90,8 +73,6 @@ class ControlsCard(Card):
             field.edited.connect(self._show_wrong)
             field.committed.connect(self._show_wrong)
         self.tick.clicked.connect(self._on_tick_clicked)
-        self.full.clicked.connect(self.full_screen_pressed)
-        self.close_screen.clicked.connect(self.close_pressed)
         self._show()
 
     @property
@@ -195,11 +176,3 @@ class ControlsCard(Card):
         else:
             self.rate.set_wrong(tr("Enter the steps per minute."))
             self._show_wrong()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for row in (self._choose, self._set):
-            row.setSpacing(px(12))
-        for field in (self.target, self.rate):
-            field.setFixedWidth(px(FIELD_WIDTH))

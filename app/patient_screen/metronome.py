@@ -38,13 +38,7 @@ class Metronome(QObject):
         self._timer.timeout.connect(self.look)
 
     def start(self, beats_per_min: int) -> None:
-        """Tick now and from now on so many times a minute.
-
-        Raises
-        ------
-        ValueError
-            Not within LEAST and MOST.
-        """
+        """Tick now and at this rate; raises ValueError outside LEAST to MOST."""
         if not LEAST <= beats_per_min <= MOST:
             raise ValueError(f"beats_per_min is {beats_per_min}, expected {LEAST} to {MOST}")
         self.beats_per_min, self._begin_s, self._next = beats_per_min, self._now_s(), 0

@@ -10,18 +10,10 @@ from app.wording.translation import tr
 
 
 class PatientWindow(QWidget):
-    """Esc and F8 close it, F11 fills the screen, Space is for the walk.
+    """Esc and F8 close it, F11 fills the screen, Space is for the walk."""
 
-    Signals
-    -------
-    closed
-        By whatever way.
-    run_requested
-        Space was pressed here.
-    """
-
-    closed = Signal()
-    run_requested = Signal()
+    closed = Signal()  # by whatever way
+    run_requested = Signal()  # space was pressed here
 
     def __init__(self) -> None:
         super().__init__()

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
+from app.charts.marks import stretches
 from app.plots.thinning import envelope, thin
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text
 from core.body import Side
@@ -20,6 +21,7 @@ from core.samples import FloatArray
 LEAST_SIZE = (320, 88)  # what can just be read; the page gives more where it has more
 LEAST_OF_THREE = 66  # px high: each of three over one another
 AXIS_HEIGHT, BARE_AXIS_HEIGHT = 24, 6
+FOOT = 6  # over and under an axis, whose last figure is half beyond it
 CURVE_PX = 2.0
 HAIR_PX = 1.0
 LINE_PIECE = 64  # points that are stroked at a time: the time for one line grows faster than its points
@@ -40,12 +42,56 @@ class Curve:
     second_deg: FloatArray | None = None
 
 
-class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+class AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
+    def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
+        return [f"{value:.0f}".replace("-", MINUS) for value in values]
+
+
+class AngleAxes(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Angles over time in a view of their own.
+
+    It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
+    """
+
+    def __init__(self, beneath: pg.AxisItem, *, has_mouse: bool) -> None:
+        super().__init__(useOpenGL=False)
+        for part in (self, self.viewport()):  # a click goes on to the page's control, which takes the focus
+            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.view_box = pg.ViewBox(enableMenu=False, enableMouse=has_mouse)
+        self._angle_axis, self._beneath = AngleAxis("left"), beneath
+        self._layout = pg.GraphicsLayout()
+        self._layout.setSpacing(0)
+        self._layout.addItem(self._angle_axis, 0, 0)
+        self._layout.addItem(self.view_box, 0, 1)
+        self._layout.addItem(beneath, 1, 1)
+        self._angle_axis.linkToView(self.view_box)
+        self.view_box.setDefaultPadding(0.0)
+        self.view_box.disableAutoRange()
+        self.setCentralItem(self._layout)
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()  # Qt's own goes by the scene
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
+
+    def _apply_theme(self) -> None:
+        theme = current_theme()
+        self.setBackground(theme.colours.surface)
+        self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
+        for axis in (self._angle_axis, self._beneath):
+            axis.setPen(theme.pen(theme.colours.control, 1))
+            axis.setTextPen(QColor(theme.colours.ink2))
+            axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
+        self._layout.setContentsMargins(0, theme.px(FOOT), theme.px(RIGHT_MARGIN), 0)
+
+
+class AngleChart(AngleAxes):
     """Axes that stay `lowest_deg` to `highest_deg` unless a curve leaves them.
 
     Above another chart on the same time, `has_times` is False: its times would say the same twice.
-
-    It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
     """
 
     accessible_role = QAccessible.Role.Chart
@@ -53,45 +99,28 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
     view_moved = Signal()
 
     def __init__(self, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
-        super().__init__(useOpenGL=False)
+        super().__init__(_TimeAxis("bottom"), has_mouse=True)
         self._has_times, self._is_of_three = has_times, False
         self._fixed = (lowest_deg, highest_deg)
         self.range_deg = self._fixed
         self.curves: Mapping[Side, Curve] = {}
         self._time_s: FloatArray = np.zeros(0)
-        for part in (self, self.viewport()):  # a click goes on to the page's control, which takes the focus
-            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._view = pg.ViewBox(enableMenu=False)
-        self._angle_axis, self._time_axis = AngleAxis("left"), _TimeAxis("bottom")
-        self._layout = pg.GraphicsLayout()
-        self._layout.setSpacing(0)
-        self._layout.addItem(self._angle_axis, 0, 0)
-        self._layout.addItem(self._view, 0, 1)
-        self._layout.addItem(self._time_axis, 1, 1)
-        self._angle_axis.linkToView(self._view)
-        self._time_axis.linkToView(self._view)
-        self.setCentralItem(self._layout)
-        self._view.setMouseEnabled(x=True, y=False)
-        self._view.setDefaultPadding(0.0)
-        self._view.disableAutoRange()
-        self._view.setYRange(*self._fixed, padding=0)
+        self._beneath.linkToView(self.view_box)
+        self.view_box.setMouseEnabled(x=True, y=False)
+        self.view_box.setYRange(*self._fixed, padding=0)
         self._zero = pg.InfiniteLine(0.0, angle=0)
-        self._cursor = pg.InfiniteLine(angle=90)
-        self._cursor.hide()
+        self.reading_line = pg.InfiniteLine(angle=90)
+        self.reading_line.hide()
         self._items = {side: _CurveItem(side) for side in Side}
-        for item in (self._zero, *self._items.values(), self._cursor):
-            self._view.addItem(item, ignoreBounds=True)
-        self._view.sigXRangeChanged.connect(self._on_x_range_changed)
-        self._view.sigResized.connect(self._redraw)  # no finer than the screen: its width has changed
+        for item in (self._zero, *self._items.values(), self.reading_line):
+            self.view_box.addItem(item, ignoreBounds=True)
+        self.view_box.sigXRangeChanged.connect(self._on_x_range_changed)
+        self.view_box.sigResized.connect(self._redraw)  # no finer than the screen: its width has changed
         self._apply_theme()
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
+    def minimumSizeHint(self) -> QSize:
         less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT
         return QSize(px(LEAST_SIZE[0]), px((LEAST_OF_THREE if self._is_of_three else LEAST_SIZE[1]) - less))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def set_of_three(self, is_of_three: bool) -> None:
         """Let it be lower, where three charts share the room of two."""
@@ -104,7 +133,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
 
     @property
     def visible_s(self) -> tuple[float, float]:
-        first, last = self._view.viewRange()[0]
+        first, last = self.view_box.viewRange()[0]
         return float(first), float(last)
 
     @property
@@ -120,31 +149,31 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self._time_s, self.curves = time_s, curves
         drawn = [values for curve in curves.values() for values in (curve.angle_deg, curve.second_deg)]
         self.range_deg = range_for(self._fixed, [values for values in drawn if values is not None])
-        self._view.setYRange(*self.range_deg, padding=0)
+        self.view_box.setYRange(*self.range_deg, padding=0)
         first, last = self.whole_s
-        self._view.setLimits(xMin=first, xMax=last, minXRange=SHORTEST_VIEW_S)
+        self.view_box.setLimits(xMin=first, xMax=last, minXRange=SHORTEST_VIEW_S)
         span = self.range_deg[1] - self.range_deg[0]
         step = TICK_DEG if span <= 8 * TICK_DEG else None
         self._angle_axis.setTickSpacing(levels=[(step, 0)] if step else None)
         self._redraw()
 
     def see(self, first_s: float, last_s: float) -> None:
-        self._view.setXRange(first_s, last_s, padding=0)
+        self.view_box.setXRange(first_s, last_s, padding=0)
 
     def link_time(self, other: "AngleChart") -> None:
         """Show the same stretch of time as `other` from now on."""
-        self._view.setXLink(other._view)
+        self.view_box.setXLink(other.view_box)
 
     def set_cursor(self, time_s: float | None) -> None:
-        self._cursor.setVisible(time_s is not None)
+        self.reading_line.setVisible(time_s is not None)
         if time_s is not None:
-            self._cursor.setPos(time_s)
+            self.reading_line.setPos(time_s)
 
     def time_at(self, scene_x: float, scene_y: float) -> float | None:
         """Give the time under a point of the scene; None beside the axes."""
-        if not self._view.sceneBoundingRect().contains(scene_x, scene_y):
+        if not self.view_box.sceneBoundingRect().contains(scene_x, scene_y):
             return None
-        return float(self._view.mapSceneToView(pg.Point(scene_x, scene_y)).x())
+        return float(self.view_box.mapSceneToView(pg.Point(scene_x, scene_y)).x())
 
     def curve_points(self, side: Side) -> tuple[FloatArray, FloatArray]:
         """Give time and angle of the points that are drawn."""
@@ -155,7 +184,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         """Hand the items what is in sight, no finer than the screen."""
         first, last = np.searchsorted(self._time_s, self.visible_s)
         part = slice(max(int(first) - 1, 0), int(last) + 1)
-        columns = max(int(self._view.width()), 100)
+        columns = max(int(self.view_box.width()), 100)
         for side, item in self._items.items():
             item.setData(self._time_s[part], self.curves.get(side), part, columns)
 
@@ -164,26 +193,14 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self.view_moved.emit()
 
     def _apply_theme(self) -> None:
-        theme = current_theme()
-        c = theme.colours
-        self.setBackground(c.surface)
-        self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
-        self._time_axis.setHeight(theme.px(AXIS_HEIGHT if self._has_times else BARE_AXIS_HEIGHT))
-        self._time_axis.setStyle(showValues=self._has_times)
-        for axis in (self._angle_axis, self._time_axis):
-            axis.setPen(theme.pen(c.control, 1))
-            axis.setTextPen(QColor(c.ink2))
-            axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
-        self._layout.setContentsMargins(0, theme.px(6), theme.px(RIGHT_MARGIN), 0)
+        super()._apply_theme()
+        c = current_theme().colours
+        self._beneath.setHeight(px(AXIS_HEIGHT if self._has_times else BARE_AXIS_HEIGHT))
+        self._beneath.setStyle(showValues=self._has_times)
         self._zero.setPen(pg.mkPen(c.control, width=1))
-        self._cursor.setPen(pg.mkPen(c.ink, width=1))
+        self.reading_line.setPen(pg.mkPen(c.ink, width=1))
         for item in self._items.values():
             item.update()
-
-
-class AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
-    def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
-        return [f"{value:.0f}".replace("-", MINUS) for value in values]
 
 
 class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
@@ -278,9 +295,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
 
 def runs(values: FloatArray) -> list[slice]:
     """Give the stretches without a gap."""
-    known = np.concatenate([[False], np.isfinite(values), [False]]).astype(np.int8)
-    borders = np.flatnonzero(np.diff(known))
-    return [slice(int(start), int(end)) for start, end in borders.reshape(-1, 2)]
+    return [slice(first, last + 1) for first, last in stretches(np.isfinite(values))]
 
 
 def _polygon(x: FloatArray, y: FloatArray) -> QPolygonF:

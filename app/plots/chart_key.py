@@ -4,15 +4,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy
 
 from app.theme.current import current_theme, px
 from app.theme.icons import VERDICT_ICONS, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.widgets.chip import leg_name
+from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText
-from app.widgets.themed import Themed
 from app.wording.translation import joined, tr
 from app.wording.verdicts import verdict_word
 from core.body import Side
@@ -40,7 +40,7 @@ class ChartKeyWords:
 NOTHING_DRAWN = ChartKeyWords({})
 
 
-class ChartKey(Themed):
+class ChartKey(Painted):
     """At the right of its room; where that is narrow, the reference gives way, then the thin line's date."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -59,14 +59,12 @@ class ChartKey(Themed):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(self._width_of_legs() + self._width_of_thin(self.words.thin) + px(GAP), px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
         return QSize(self._width_of_legs(), px(HEIGHT))
 
-    def texts(self) -> list[PaintedText]:
-        """What is painted, and where."""
+    def painted_texts(self) -> list[PaintedText]:
         font, px = current_theme().font(12), current_theme().px
         found, right = [], float(self.width())
         thin, reference = self._fitting()
@@ -77,23 +75,19 @@ class ChartKey(Themed):
                 right -= width + (mark + px(LINE_APART) if mark else 0) + px(GAP)
         return found
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, px, middle = current_theme(), current_theme().px, self.height() / 2
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         right = float(self.width())
         thin, reference = self._fitting()
-        texts = {text.text: text for text in self.texts()}
+        left_of = {text.text: text.box.left() for text in self.painted_texts()}
         if reference:
-            texts[reference].paint(painter, theme.colours)
-            right = texts[reference].box.left()
+            right = left_of[reference]
             if self.words.has_band:
                 right -= px(LINE_APART) + px(SWATCH[0])
                 self._paint_swatch(painter, right)
             right -= px(GAP)
         if thin:
-            texts[thin].paint(painter, theme.colours)
-            right = texts[thin].box.left() - px(LINE_APART)
+            right = left_of[thin] - px(LINE_APART)
             painter.setPen(self._thin_pen())
             painter.drawLine(round(right - px(LINE)), round(middle), round(right), round(middle))
             right -= px(LINE) + px(GAP)
@@ -132,7 +126,6 @@ class ChartKey(Themed):
         return thin, next(fitting, "")
 
     def _width_of_legs(self) -> int:
-        px = current_theme().px
         each = (
             px(CHIP) + px(LINE_APART) + px(LINE) + (px(LINE_APART) + px(ICON)) * (verdict is not Verdict.READ)
             for verdict in self.words.legs.values()
@@ -140,16 +133,10 @@ class ChartKey(Themed):
         return sum(each) + px(GAP) * max(len(self.words.legs) - 1, 0)
 
     def _width_of_thin(self, text: str) -> int:
-        px = current_theme().px
         return px(GAP) + px(LINE) + px(LINE_APART) + self._width(text) if text else 0
 
     def _width_of_reference(self, text: str) -> int:
-        px = current_theme().px
         return px(GAP) + (px(SWATCH[0]) + px(LINE_APART)) * self.words.has_band + self._width(text)
 
     def _width(self, text: str) -> int:
         return QFontMetrics(current_theme().font(12)).horizontalAdvance(text) + 1
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -14,6 +14,7 @@ from app.theme.icons import VERDICT_ICONS, Icon
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import tr
 from app.wording.verdicts import verdict_alone
@@ -42,29 +43,23 @@ class ComparedFrame(Card):
     """A chart under its leg, joint and sign, with what must be known to read it."""
 
     def __init__(self, chart: ComparedChart, side: Side, kind: JointKind) -> None:
+        super().__init__(padding=12, spacing=2)
         self._side, self._kind = side, kind
         self.chart = chart
         self._mark = IconMark(Icon.DIFFERENCE, size=18)
         self._note = Text(size=12, weight=MEDIUM, wraps=True)
-        super().__init__(padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        head, notes = QHBoxLayout(), QHBoxLayout()
-        head.setSpacing(8)
-        head.addWidget(Chip(side))
-        head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
         self._verdict_mark = IconMark(VERDICT_ICONS[Verdict.READ], size=16)
         self.verdict = Text(size=12, weight=MEDIUM)
         for part in (self._verdict_mark, self.verdict):
             part.hide()
-            head.addWidget(part)
-        head.addStretch(1)
-        head.addWidget(Text(sign_in_words(kind), size=12, tone="ink2"))
-        notes.setSpacing(8)
-        notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        notes.addWidget(self._note, 1)
-        self.column.addLayout(head)
-        self.column.addLayout(notes)
-        self.column.addWidget(chart, 1)
+        title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
+        sign = Text(sign_in_words(kind), size=12, tone="ink2")
+        head = lay_out(QHBoxLayout(), Chip(side), title, self._verdict_mark, self.verdict, 1, sign)
+        notes = lay_out(QHBoxLayout(), (self._mark, 0, Qt.AlignmentFlag.AlignTop), (self._note, 1))
+        for row in (head, notes):
+            row.setSpacing(8)
+        lay_out(self.column, head, notes, (chart, 1))
 
     @property
     def note(self) -> str:

@@ -7,13 +7,13 @@ its right half, its opposite, which is the same line, in the middle of the left.
 import math
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, QSize
-from PySide6.QtGui import QAccessible, QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QAccessible, QColor, QImage, QPainter, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.theme.current import current_theme, px
+from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
-from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
 from core.body import Side
 from core.published.figures import CostOverSphere
@@ -30,7 +30,7 @@ CIRCLE_STEPS = 73
 X_REACH, Y_REACH = 2 * math.sqrt(2), math.sqrt(2)  # half axes of Hammer's ellipse
 
 
-class CostMap(Themed):
+class CostMap(Painted):
     """One sensor of one joint."""
 
     accessible_role = QAccessible.Role.Chart
@@ -63,19 +63,11 @@ class CostMap(Themed):
             return 0.0, 0.0
         return float(np.rad2deg(self._cost.rms_rad_s.min())), float(np.rad2deg(self._cost.rms_rad_s.max()))
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_WIDTH), self._height_for(px(LEAST_WIDTH)))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self.setFixedHeight(self._height_for(event.size().width()))
 
     def _height_for(self, width: int) -> int:
-        px = current_theme().px
         return min(width // 2, px(MOST_HEIGHT)) + px(SCALE_HEIGHT + 4)
 
     def globe(self) -> QRectF:
@@ -98,36 +90,26 @@ class CostMap(Themed):
         )
 
     def painted_texts(self) -> list[PaintedText]:
-        theme = current_theme()
-        px, (low, high) = theme.px, self.limits_deg_s
-        top, middle = self.height() - px(SCALE_HEIGHT), self.width() / 2
-        half = middle - px(RAMP / 2 + 8)
-        box = QRectF(0, top, half, px(SCALE_HEIGHT))
+        if self._cost is None:
+            return []
+        px, font, (low, high) = current_theme().px, current_theme().font(12), self.limits_deg_s
+        half = self.width() / 2 - px(RAMP / 2 + 8)
+        box = QRectF(0, self.height() - px(SCALE_HEIGHT), half, px(SCALE_HEIGHT))
         return [
-            PaintedText(f"{low:.0f} °/s", box, self._font(), "ink2", RIGHT),
-            PaintedText(
-                f"{high:.0f} °/s",
-                QRectF(self.width() - half, top, half, px(SCALE_HEIGHT)),
-                self._font(),
-                "ink2",
-                LEFT,
-            ),
+            PaintedText(f"{low:.0f} °/s", box, font, "ink2", RIGHT),
+            PaintedText(f"{high:.0f} °/s", box.translated(self.width() - half, 0), font, "ink2", LEFT),
         ]
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         if self._cost is None:
             return
         theme, globe = current_theme(), self.globe()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
         painter.drawImage(globe, self._picture())
         painter.setPen(theme.pen(theme.colours.control, 1.25))
         painter.drawEllipse(globe)
         self._paint_marks(painter)
         self._paint_scale(painter)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _paint_marks(self, painter: QPainter) -> None:
         """A cross at the axis in use and its opposite, with the circle of its certainty; a ring at the best fit."""
@@ -158,7 +140,6 @@ class CostMap(Themed):
         return QPolygonF([self.place(point) for point in points])
 
     def _paint_scale(self, painter: QPainter) -> None:
-        px = current_theme().px
         width = px(RAMP) / BANDS
         top = self.height() - px(SCALE_HEIGHT) + px(SCALE_HEIGHT - 10) / 2
         left = (self.width() - px(RAMP)) / 2
@@ -200,12 +181,9 @@ class CostMap(Themed):
         pixels = np.where(is_inside, colours[band], np.uint32(0))
         return QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_ARGB32).copy()
 
-    def _font(self) -> QFont:
-        return current_theme().font(12)
-
     def _apply_theme(self) -> None:
         self._image = None
-        self.setMinimumWidth(self.sizeHint().width())
+        self.setMinimumWidth(px(LEAST_WIDTH))
         self.setFixedHeight(self._height_for(max(self.width(), self.minimumWidth())))
         self.update()
 

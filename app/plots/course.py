@@ -20,46 +20,38 @@ from app.summary.course_words import (
     visit_in_words,
 )
 from app.summary.progress_words import arrow_of
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.change_arrow import ChangeArrow
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.verdicts.model import Verdict
 
 LABELS, CHANGES = 166, 196  # px: the columns of words beside the lanes
 NARROW_BELOW = 560  # words stand over the lanes instead
-ROW = 62
+ROW = 60
 VALUE, VALUE_OF_TWO = 28, 22
 WIDEST = 16_777_215  # Qt's own
 
 
 class CourseCard(Card):
-    """Passive. The arrow keys and the mouse go from visit to visit, Enter and a click open one.
-
-    Signals
-    -------
-    visit_opened
-        The id of its session.
-    computing_requested
-        The visits that have no figures yet are to be evaluated.
-    """
+    """Passive. The arrow keys and the mouse go from visit to visit, Enter and a click open one."""
 
     accessible_role = QAccessible.Role.Chart
 
-    visit_opened = Signal(object)
-    computing_requested = Signal()
+    visit_opened = Signal(object)  # the id of its session
+    computing_requested = Signal()  # the visits that have no figures yet are to be evaluated
 
     def __init__(self) -> None:
-        self._grid, self.head, self._foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
+        super().__init__(spacing=0.5)  # a pixel, at any size
+        self._grid = QGridLayout()
         self.rows: dict[LaneKind, LaneRow] = {}
         self._is_narrow: bool | None = None
-        super().__init__(padding=16, spacing=0)
         self.visits: tuple[CourseVisit, ...] = ()
         self.lanes: tuple[CourseLane, ...] = ()
         self.number: int | None = None
@@ -72,15 +64,13 @@ class CourseCard(Card):
         self.info.setAccessibleName(tr("Method"))
         self.info.setCheckable(True)
         self._grid_room = QWidget()
-        self.head.addWidget(self.info)
-        self._foot.addWidget(self.note, 1)
-        self._foot.addWidget(self.compute)
-        self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid_room.setLayout(self._grid)
-        self.column.addLayout(self.head)
-        self.column.addWidget(self._grid_room)
-        self.column.addWidget(self.method)
-        self.column.addLayout(self._foot)
+        self.head = lay_out(QHBoxLayout(), self.info, spacing=8)
+        foot = lay_out(QHBoxLayout(), (self.note, 1), self.compute, margins=(0, 0, 8, 0), spacing=12)
+        lay_out(self.column, self.head, self._grid_room, self.method, foot, margins=(16, 4, 8, 4))
+        scaled(self._grid.setContentsMargins, 0, 2, 8, 0)
+        scaled(self._grid.setHorizontalSpacing, 8)
+        scaled(self._grid.setVerticalSpacing, 2)
         self._join(self.axis)
         self._show_kinds(lane_kinds())
         self.compute.clicked.connect(self.computing_requested)
@@ -160,21 +150,18 @@ class CourseCard(Card):
     def _lay(self) -> None:
         """Put the rows into the grid, and the axis under them."""
         is_narrow = bool(self._is_narrow)
-        for at in range(self._grid.rowCount()):
-            self._grid.setRowMinimumHeight(at, 0)
         for number, row in enumerate(self.rows.values()):
             at = 2 * number
             row.set_narrow(is_narrow)
             self._grid.addWidget(row.label, at, 0)
             self._grid.addWidget(row.changes, at, 1 if is_narrow else 2)
             self._grid.addWidget(row.plot, at + 1 if is_narrow else at, 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
-            self._grid.setRowMinimumHeight(at, 0 if is_narrow else px(ROW))
         self._grid.removeWidget(self.axis)
         self._grid.addWidget(self.axis, 2 * len(self.rows), 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
         self._grid.setColumnStretch(1, 0 if is_narrow else 1)
         hear_as_laid_out(self._grid_room)
-        self._apply_theme()
+        on_theme(self._keep_heights)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """A hairline over every row."""
@@ -187,18 +174,10 @@ class CourseCard(Card):
             top = self._grid_room.y() + min(row.plot.y(), row.label.y()) - 1.5
             painter.drawLine(QPointF(side, top), QPointF(self.width() - side, top))
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self.column.setContentsMargins(px(16), px(4), px(8), px(4))
-        self._grid.setContentsMargins(0, px(2), px(8), 0)
-        self._grid.setHorizontalSpacing(px(8))
-        self._grid.setVerticalSpacing(px(2))
-        for number in range(len(self.rows)):
-            self._grid.setRowMinimumHeight(2 * number, 0 if self._is_narrow else px(ROW - 2))
-        self.head.setSpacing(px(8))
-        self._foot.setContentsMargins(0, 0, px(8), 0)
-        self._foot.setSpacing(px(12))
+    def _keep_heights(self) -> None:
+        for at in range(self._grid.rowCount()):
+            is_row = at % 2 == 0 and at < 2 * len(self.rows) and not self._is_narrow
+            self._grid.setRowMinimumHeight(at, px(ROW) if is_row else 0)
 
 
 class LaneRow:
@@ -259,29 +238,21 @@ class LaneRow:
     def _beside(self, *parts: QWidget, wide: QWidget | None = None) -> QWidget:
         """Parts in a row; `wide` takes what the others leave."""
         room = QWidget()
-        row = QHBoxLayout(room)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(px(6))
-        for part in parts:
-            row.addWidget(part, int(part is wide))
+        row = lay_out(QHBoxLayout(room), *((part, int(part is wide)) for part in parts), margins=0, spacing=6)
         if wide is None:
             row.addStretch(1)
         return room
 
 
-class _Words(Themed):
+class _Words(QWidget):
     """Rows of words under one another, in the middle of the height that there is."""
 
     def __init__(self, width: int) -> None:
         super().__init__()
         self._width, self._is_wide = width, False
         self._parts: list[QWidget] = []
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(0)
-        self._column.addStretch(1)
-        self._column.addStretch(1)
-        self._apply_theme()
+        self._column = lay_out(QVBoxLayout(self), 1, 1, margins=0, spacing=0)
+        on_theme(self._fit)
 
     def clear(self) -> None:
         for part in self._parts:
@@ -298,9 +269,9 @@ class _Words(Themed):
     def set_wide(self, is_wide: bool) -> None:
         """Take all the width there is, in place of a column's."""
         self._is_wide = is_wide
-        self._apply_theme()
+        self._fit()
 
-    def _apply_theme(self) -> None:
+    def _fit(self) -> None:
         width = px(self._width)
         self.setMinimumWidth(0 if self._is_wide else width)
         self.setMaximumWidth(WIDEST if self._is_wide else width)

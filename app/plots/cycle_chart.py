@@ -29,7 +29,7 @@ from app.charts.stride_chart import (
     curves_of_walk,
     usual_range_deg,
 )
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.widgets.themed import Themed
 from core.body import JointKind, Side
 from core.samples import FloatArray
@@ -64,8 +64,8 @@ class CycleChart(Themed):
         self.labels: tuple[CurveLabel, ...] = ()
         self._picture: QPixmap | None = None
         self._layout: Layout | None = None
-        self._least = LEAST_SIZE
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self._least = LEAST_SIZE
 
     @property
     def is_widened(self) -> bool:
@@ -75,12 +75,8 @@ class CycleChart(Themed):
     def _usual_deg(self) -> tuple[float, float]:
         return usual_range_deg(self._kind, is_about_mean=self.is_about_mean)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(self._least[0]), px(self._least[1]))
-
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return QSize(*map(px, self._least))
 
     def set_tight(self, is_tight: bool) -> None:
         self._least = TIGHT_SIZE if is_tight else LEAST_SIZE
@@ -189,5 +185,4 @@ class CycleChart(Themed):
             self.picked.emit(min(max(frame.percent_at(at.x()), 0.0), 100.0), frame.angle_at(at.y()))
 
     def _apply_theme(self) -> None:
-        self.updateGeometry()
         self.redraw()

@@ -3,15 +3,14 @@
 from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QBoxLayout
+from PySide6.QtWidgets import QBoxLayout, QWidget
 
 from app.charts.cycles import Band, SideCycle
 from app.charts.marks import CurveLabel, Deviation, Gap
 from app.plots.cycle_chart import CycleChart
 from app.plots.cycle_frame import CycleFrame
 from app.summary.comparison import Comparison
-from app.theme.current import px
-from app.widgets.themed import Themed
+from app.widgets.lay_out import lay_out
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.samples import FloatArray
@@ -19,7 +18,7 @@ from core.verdicts.model import JointVerdicts
 from core.verdicts.norms import ReferenceCurves
 
 
-class CycleCharts(Themed):
+class CycleCharts(QWidget):
     """All charts, with what they share: the band and the single strides, each on or off.
 
     The hip's is there where a hip was measured, or should have been.
@@ -32,13 +31,11 @@ class CycleCharts(Themed):
         self.hip, self.knee, self.ankle = (CycleFrame(CycleChart(kind), kind) for kind in JointKind)
         self._frames = (self.hip, self.knee, self.ankle)
         self.hip.hide()
-        self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
-        self._box.setContentsMargins(0, 0, 0, 0)
+        frames = ((frame, 1) for frame in self._frames)
+        self._box = lay_out(QBoxLayout(QBoxLayout.Direction.TopToBottom, self), *frames, margins=0, spacing=12)
         for frame in self._frames:
-            self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
         self.set_band(reference)
-        self._apply_theme()
 
     @property
     def frames(self) -> tuple[CycleFrame, ...]:
@@ -66,23 +63,14 @@ class CycleCharts(Themed):
         self.hip.setVisible(any(joint.is_hip for joint in cycles))
 
     def set_band(self, reference: ReferenceCurves | None, names: Sequence[str] | None = None, source: str = "") -> None:
-        """Draw this group's band, or none where none may stand beside the walk.
-
-        Parameters
-        ----------
-        names
-            Of the band, or that there is none: the key shows the first that has room. None: as for any other.
-        source
-            Whose band it is, or why there is none: for the info button.
-        """
+        """Draw a group's band or none; `names`: for the key (first that fits), `source`: for the info button."""
         default = (tr("Reference"),) if reference is not None else ()
         for frame in self._frames:
             frame.chart.band = Band(*reference.mean_and_sd_deg(frame.kind)) if reference is not None else None
             frame.show_reference(names if names is not None else default, source)
 
     def show_beside(self, found: Comparison | None, words: str = "", thin_sides: frozenset[Side] = frozenset()) -> None:
-        """Draw thin what the walk is compared with, or say why nothing; marks and labels are to be shown again, the
-        next walk is without. `thin_sides`: the legs that have a thin line, where not both."""
+        """Draw the comparison thin, or state why not, until the next walk; marks and labels must be set again."""
         for frame in self._frames:
             frame.show_beside(found, words, thin_sides)
 
@@ -131,6 +119,3 @@ class CycleCharts(Themed):
     def _on_picked(self, percent: float, angle_deg: float) -> None:
         kind = next(frame.kind for frame in self._frames if frame.chart is self.sender())
         self.picked.emit(kind, percent, angle_deg)
-
-    def _apply_theme(self) -> None:
-        self._box.setSpacing(px(12))

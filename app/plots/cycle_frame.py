@@ -29,12 +29,13 @@ from app.summary.walk_figures import (
     why_in_figures,
     why_in_words,
 )
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.chip import leg_name
 from app.widgets.icons import IconMark
 from app.widgets.info_button import InfoButton
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import capitalised, joined, later, tr
 from app.wording.verdicts import verdict_alone, verdict_word
@@ -55,6 +56,7 @@ class CycleFrame(Card):
     """A chart with its title, the key to its curves, whose the reference is, and what must be known to read it."""
 
     def __init__(self, chart: CycleChart, kind: JointKind) -> None:
+        super().__init__(spacing=2)
         self.kind = kind
         self.chart = chart
         self.key = ChartKey()
@@ -67,18 +69,14 @@ class CycleFrame(Card):
         self._thin = ""
         self.not_reported: dict[Side, str] = {}  # why, as a sentence
         self.heights_deg: dict[Side, float] = {}
-        self._head, self._notes_row = QHBoxLayout(), QHBoxLayout()
-        super().__init__(padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self._head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
-        self._head.addWidget(self.key, 1)
-        self._head.addWidget(self.info)
-        self._notes_row.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._notes_row.addWidget(self._note, 1)
-        self.column.addLayout(self._head)
-        self.column.addLayout(self._notes_row)
-        self.column.addWidget(self.beside)
-        self.column.addWidget(chart, 3)
+        title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
+        head = lay_out(QHBoxLayout(), title, (self.key, 1), self.info, margins=(4, 0, 8, 0), spacing=8)
+        mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
+        notes = lay_out(QHBoxLayout(), mark, (self._note, 1), margins=(4, 0, 8, 0), spacing=8)
+        lay_out(self.column, head, notes, self.beside, (chart, 3))
+        # the chart reaches the right edge, where there is room for what is turned
+        scaled(self.column.setContentsMargins, 12, 6, 4, 2)
 
     @property
     def note(self) -> str:
@@ -92,10 +90,7 @@ class CycleFrame(Card):
         self.show_beside(None)
 
     def show_beside(self, found: Comparison | None, words: str = "", thin_sides: frozenset[Side] = frozenset()) -> None:
-        """Draw the walk again, thin beside it what it is compared with, or say in `words` why nothing is.
-
-        `thin_sides`: the legs that have a thin line, where not both.
-        """
+        """Redraw the walk with its comparison thin, or `words` why there is none; `thin_sides`: if not both."""
         cycles, verdicts, is_simulated = self._walk
         doubts = {side: why for side, judged in verdicts.items() if side in cycles and (why := doubt_in(judged))}
         reasons = {side: why_in_words(judged) for side, judged in verdicts.items() if side in cycles}
@@ -257,15 +252,6 @@ class CycleFrame(Card):
         if self.chart.is_widened:
             notes.append(range_in_words(self.chart.range_deg))
         return notes
-
-    def _apply_theme(self) -> None:
-        """The chart reaches the right edge, where there is room for what is turned."""
-        super()._apply_theme()
-        px = current_theme().px
-        self.column.setContentsMargins(px(12), px(6), px(4), px(2))
-        for row in (self._head, self._notes_row):
-            row.setContentsMargins(px(4), 0, px(8), 0)
-            row.setSpacing(px(8))
 
 
 def _has_common_height(found: Comparison, joint: Joint) -> bool:

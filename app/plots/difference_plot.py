@@ -4,17 +4,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPointF, QRectF, QSize
-from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from core.body import Side
 
@@ -58,7 +58,7 @@ class DifferenceGroup:
     rows: tuple[DifferenceRow, ...]
 
 
-class DifferencePlot(Themed):
+class DifferencePlot(Painted):
     """As high as its rows."""
 
     accessible_role = QAccessible.Role.Chart
@@ -80,15 +80,6 @@ class DifferencePlot(Themed):
         rows = [row for group in self.groups for row in group.rows]
         values = [abs(dot.value) for row in rows for dot in row.dots] + [row.error for row in rows]
         return 1.1 * max([LEAST_REACH, *filter(math.isfinite, values)])
-
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        height = sum(px(TITLE) + len(group.rows) * px(ROW) + px(GAP) for group in self.groups) + px(AXIS)
-        title = max((QFontMetrics(self._title_font()).horizontalAdvance(g.title) for g in self.groups), default=0)
-        return QSize(max(title, self._words_right() + px(LEAST_PLOT + 2 * DOT + MARK)), height)
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def x_of(self, value: float) -> float:
         """The place of a difference, in px of the widget."""
@@ -113,11 +104,9 @@ class DifferencePlot(Themed):
             texts.append(PaintedText(words, box, theme.font(12), "ink2", CENTRE))
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        c = theme.colours
         for group, top in zip(self.groups, self._tops(), strict=True):
             painter.setPen(theme.pen(c.line, 1))
             painter.drawLine(QPointF(0, top), QPointF(self.width(), top))
@@ -125,12 +114,10 @@ class DifferencePlot(Themed):
                 self._paint_row(painter, row, top + px(TITLE) + (k + 0.5) * px(ROW))
         if self.groups:
             self._paint_axis(painter)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def _paint_row(self, painter: QPainter, row: DifferenceRow, middle: float) -> None:
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         if row.side is not None:
             chip = px(CHIP)
             paint_chip(painter, QRectF(0, middle - chip / 2, chip, chip), row.side, theme)
@@ -175,7 +162,6 @@ class DifferencePlot(Themed):
         return [k * step for k in range(-count, count + 1)] if self.groups else []
 
     def _plot(self) -> tuple[float, float]:
-        px = current_theme().px
         return self._words_right() + px(DOT), self.width() - px(DOT + MARK + 2)
 
     def _words_right(self) -> int:
@@ -194,6 +180,7 @@ class DifferencePlot(Themed):
         return current_theme().font(14, SEMIBOLD if row.exceeds else QFont.Weight.Normal)
 
     def _apply_theme(self) -> None:
-        self.setFixedHeight(self.sizeHint().height())
-        self.setMinimumWidth(self.sizeHint().width())
+        title = max((QFontMetrics(self._title_font()).horizontalAdvance(g.title) for g in self.groups), default=0)
+        self.setFixedHeight(sum(px(TITLE) + len(g.rows) * px(ROW) + px(GAP) for g in self.groups) + px(AXIS))
+        self.setMinimumWidth(max(title, self._words_right() + px(LEAST_PLOT + 2 * DOT + MARK)))
         self.update()

@@ -4,14 +4,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHelpEvent, QPainter, QPaintEvent
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHelpEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QToolTip
 
 from app.theme.current import current_theme, px
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from app.wording.translation import figure_text
 
@@ -34,7 +34,7 @@ class GroupLine:
     count: str
 
 
-class GroupPlot(Themed):
+class GroupPlot(Painted):
     """As high as its groups. `unit` is under the axis."""
 
     accessible_role = QAccessible.Role.Chart
@@ -55,13 +55,7 @@ class GroupPlot(Themed):
 
     @property
     def axis(self) -> tuple[float, float, float]:
-        """The round values at both ends of the axis, and the step between its ticks.
-
-        Returns
-        -------
-        (float, float, float)
-            In the unit of the means.
-        """
+        """Give the round ends of the axis and the tick step, in the means' unit."""
         ends = [
             line.mean + sign * (line.half if math.isfinite(line.half) else 0.0)
             for line in self.lines
@@ -83,17 +77,6 @@ class GroupPlot(Themed):
         left, right = self._plot()
         return left + (value - low) / (high - low) * (right - left)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        width = self._label_width() + px(LEAST_PLOT) + self._count_width() + 2 * px(GAP)
-        return QSize(width, len(self.lines) * px(ROW) + px(AXIS))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(
-            px(LEAST_PLOT) + self._count_width() + 2 * px(GAP),
-            self.sizeHint().height(),
-        )
-
     def painted_texts(self) -> list[PaintedText]:
         theme = current_theme()
         px, texts, font = theme.px, [], theme.font(14, MEDIUM)
@@ -114,13 +97,11 @@ class GroupPlot(Themed):
             texts.append(PaintedText(self._unit, box, theme.font(12), "ink2", CENTRE))
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         if not self.lines:
             return
         theme = current_theme()
-        c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        c = theme.colours
         bottom = len(self.lines) * px(ROW)
         left, right = self._plot()
         painter.setPen(theme.pen(c.line, 1))
@@ -132,8 +113,6 @@ class GroupPlot(Themed):
             painter.drawLine(QPointF(self.x_of(value), bottom), QPointF(self.x_of(value), bottom + px(TICK)))
         for k, line in enumerate(self.lines):
             self._paint_line(painter, line, (k + 0.5) * px(ROW))
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def event(self, event: QEvent) -> bool:
         """Show the whole of a name that is cut, under the mouse."""
@@ -183,6 +162,7 @@ class GroupPlot(Themed):
         return max((metrics.horizontalAdvance(line.count) for line in self.lines), default=0) + 1
 
     def _apply_theme(self) -> None:
-        self.setFixedHeight(self.sizeHint().height())
-        self.setMinimumWidth(self.minimumSizeHint().width())
+        """Have a line's height for each group."""
+        self.setFixedHeight(len(self.lines) * px(ROW) + px(AXIS))
+        self.setMinimumWidth(px(LEAST_PLOT) + self._count_width() + 2 * px(GAP))
         self.update()

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.charts.axes import (
     USUAL_DEG,
@@ -18,13 +18,13 @@ from app.charts.axes import (
 )
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.phase_lanes import PhaseFrame
-from app.theme.current import px
+from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.body import name_of
 from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, later, tr
@@ -37,7 +37,7 @@ NO_VALUE = later("no value")
 NO_GAIT: Mapping[Side, SideGait] = {}
 
 
-class JointCharts(Themed):
+class JointCharts(QWidget):
     """Charts that act as one control: the mouse or the keys read, move along and zoom in time.
 
     The hip's is there where a hip was measured. `view_changed` gives whether the whole recording is in sight, and which
@@ -51,7 +51,7 @@ class JointCharts(Themed):
     def __init__(self) -> None:
         super().__init__()
         self._time_s: FloatArray = np.zeros(0)
-        self._cursor_s: float | None = None
+        self.cursor_s: float | None = None
         self._name = ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.hip, self.knee, self.ankle = (
@@ -68,13 +68,13 @@ class JointCharts(Themed):
             frame.chart.scene().sigMouseMoved.connect(self._on_mouse_moved)
         self._column.addWidget(self.phases)
         self.phases.hide()
-        self.phases.lanes.pointed.connect(self._read_at)
+        self.phases.lanes.pointed.connect(self.read_at)
         self.phases.lanes.zoomed.connect(self.zoom)
         self.phases.lanes.dragged.connect(self.go_on)
         for frame in (self.hip, self.ankle):
             frame.chart.link_time(self.knee.chart)
         self.knee.chart.view_moved.connect(self._on_view_moved)
-        self._apply_theme()
+        scaled(self._column.setSpacing, 12)
 
     @property
     def visible_s(self) -> tuple[float, float]:
@@ -89,15 +89,7 @@ class JointCharts(Themed):
     def show_recording(
         self, name: str, time_s: FloatArray, is_simulated: bool, gait: Mapping[Side, SideGait] = NO_GAIT
     ) -> None:
-        """Make the charts ready for another recording, all of it in sight; `show_joints` then draws.
-
-        Parameters
-        ----------
-        time_s : (n,)
-            The recording's clock.
-        gait
-            Of the legs that walked, whose phases stand under the curves.
-        """
+        """Prepare the charts for a recording, all in sight; `time_s` (n,), `gait`: of walking legs."""
         self._time_s = time_s
         self.phases.show_gait(time_s, gait, is_simulated)
         rows = [row for lane in self.phases.lanes.lanes.values() for row in lane.event_rows]
@@ -106,7 +98,7 @@ class JointCharts(Themed):
         for frame in self.frames:
             frame.set_simulated(is_simulated)
             frame.chart.show_curves(time_s, {})
-        self._read_at(None)
+        self.read_at(None)
         self.show_whole()
 
     def show_joints(self, curves: Mapping[Joint, Curve]) -> None:
@@ -118,7 +110,7 @@ class JointCharts(Themed):
         self.hip.setVisible(has_hips)
         for frame in self.frames:
             frame.set_of_three(has_hips)
-        self._apply_theme()
+        scaled(self._column.setSpacing, 6 if has_hips else 12)
         self.hip.set_moment_shown(has_hips)  # once is enough, on top
         self.knee.set_moment_shown(not has_hips)
         what = (
@@ -127,7 +119,7 @@ class JointCharts(Themed):
         self.setAccessibleName(what.format(recording=self._name))
         reported = [*(frame.in_words() for frame in self._shown), self.phases.in_words()]
         self.setAccessibleDescription(" ".join(filter(None, reported)))
-        self._read_at(self._cursor_s)
+        self.read_at(self.cursor_s)
 
     @property
     def _shown(self) -> list["ChartFrame"]:
@@ -139,9 +131,7 @@ class JointCharts(Themed):
     def zoom(self, share: float) -> None:
         """Keep `share` of the time in sight, about the reading line if it is there."""
         first, last = self.visible_s
-        centre = (
-            self._cursor_s if self._cursor_s is not None and first <= self._cursor_s <= last else (first + last) / 2
-        )
+        centre = self.cursor_s if self.cursor_s is not None and first <= self.cursor_s <= last else (first + last) / 2
         self._see(centre - (centre - first) * share, centre + (last - centre) * share)
 
     def go_on(self, share: float) -> None:
@@ -156,7 +146,7 @@ class JointCharts(Themed):
         if not len(self._event_rows):
             return
         first, last = self.visible_s
-        at = self._cursor_s if self._cursor_s is not None else (first if is_later else last)
+        at = self.cursor_s if self.cursor_s is not None else (first if is_later else last)
         here = int(np.argmin(np.abs(self._time_s - at)))
         passed = int(np.searchsorted(self._event_rows, here, side="right" if is_later else "left"))
         following = passed if is_later else passed - 1
@@ -180,18 +170,18 @@ class JointCharts(Themed):
                 self.go_on(0.5)
             case Qt.Key.Key_Left | Qt.Key.Key_Right:
                 pixels = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
-                self._step(pixels if event.key() == Qt.Key.Key_Right else -pixels)
+                self.step(pixels if event.key() == Qt.Key.Key_Right else -pixels)
             case Qt.Key.Key_BracketLeft | Qt.Key.Key_BracketRight:
                 self.go_to_event(is_later=event.key() == Qt.Key.Key_BracketRight)
             case _:
                 super().keyPressEvent(event)
 
-    def _step(self, pixels: int) -> None:
+    def step(self, pixels: int) -> None:
         """Move the reading line by pixels, but at least from sample to sample, and keep it in sight."""
         if len(self._time_s) == 0:
             return
         first, last = self.visible_s
-        at = self._cursor_s if self._cursor_s is not None else (first + last) / 2
+        at = self.cursor_s if self.cursor_s is not None else (first + last) / 2
         here = int(np.searchsorted(self._time_s, at))
         there = int(np.searchsorted(self._time_s, at + pixels * (last - first) / max(self.knee.chart.width(), 1)))
         if there == here:
@@ -201,7 +191,7 @@ class JointCharts(Themed):
     def _go_to(self, row: int) -> None:
         """Read sample `row`, bring it in sight and say what is there."""
         time_s = float(self._time_s[row])
-        self._read_at(time_s)
+        self.read_at(time_s)
         first, last = self.visible_s
         if not first <= time_s <= last:
             self.go_on((time_s - (first + last) / 2) / (last - first))
@@ -214,13 +204,13 @@ class JointCharts(Themed):
         first, last = self.knee.chart.whole_s
         self.knee.chart.see(max(first_s, first), min(last_s, last))
 
-    def _read_at(self, time_s: float | None) -> None:
+    def read_at(self, time_s: float | None) -> None:
         """Put the reading line on the sample nearest to `time_s`, None takes it away."""
         row = None
         if time_s is not None and len(self._time_s):
             row = int(np.argmin(np.abs(self._time_s - time_s)))
             time_s = float(self._time_s[row])
-        self._cursor_s = time_s
+        self.cursor_s = time_s
         for frame in (*self.frames, self.phases):
             frame.read(row, time_s)
 
@@ -229,7 +219,7 @@ class JointCharts(Themed):
             if frame.chart.underMouse():
                 time_s = frame.chart.time_at(position.x(), position.y())
                 if time_s is not None:
-                    self._read_at(time_s)
+                    self.read_at(time_s)
 
     def _on_view_moved(self) -> None:
         first, last = self.visible_s
@@ -240,50 +230,41 @@ class JointCharts(Themed):
         times = {name: figure_text(time_s, ".1f").replace("-", MINUS) for name, time_s in shown.items()}
         self.view_changed.emit(self.is_whole, stated.format_map(times))
 
-    def _apply_theme(self) -> None:
-        self._column.setSpacing(px(12 if self.hip.isHidden() else 6))
-
 
 class ChartFrame(Card):
     """A chart with its title, its sign in words, and what is at the reading line."""
 
     def __init__(self, chart: AngleChart, kind: JointKind) -> None:
+        super().__init__(spacing=4)
         self.kind = kind
         self.chart = chart
-        self._is_narrow = self._is_wide = self._is_of_three = False
+        self._is_narrow = self._is_wide = False
         self._title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
         self._sign = Text(sign_in_words(kind), size=12, tone="ink2")
-        self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        self._moment = Text(size=14, tone="ink2")
-        self._keys = {side: SideKey(side) for side in Side}
-        self._values = {side: Text(size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
+        self.simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self.moment = Text(size=14, tone="ink2")
+        self.keys = {side: SideKey(side) for side in Side}
+        self.values = {side: Text(size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
         self._wide_mark = IconMark(Icon.DIFFERENCE, size=18)
-        self._wide = Text(size=12, weight=MEDIUM)
-        super().__init__(spacing=4)
+        self.wide = Text(size=12, weight=MEDIUM)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QGridLayout()
         head.setHorizontalSpacing(8)
         head.setVerticalSpacing(4)
-        names, readings = QHBoxLayout(), QHBoxLayout()
+        names = lay_out(QHBoxLayout(), self._title, self._sign, self._wide_mark, self.wide, self.simulated, 1)
+        readings = lay_out(QHBoxLayout(), 1, self.moment)
         names.setSpacing(8)
         readings.setSpacing(8)
-        for widget in (self._title, self._sign, self._wide_mark, self._wide, self._simulated):
-            names.addWidget(widget)
-        names.addStretch(1)
-        readings.addStretch(1)
-        readings.addWidget(self._moment)
         for side in Side:
             readings.addSpacing(12)
-            readings.addWidget(self._keys[side])
-            readings.addWidget(self._values[side])
+            lay_out(readings, self.keys[side], self.values[side])
         self._head = (names, readings)
         self._grid = head
         self._place()
-        self.column.addLayout(head)
-        self.column.addWidget(chart, 1)
+        lay_out(self.column, head, (chart, 1))
         self.set_moment_shown(kind is JointKind.KNEE)
         self._set_widened()
-        self._apply_theme()
+        on_theme(self._reserve_room)
 
     def set_room(self, *, is_narrow: bool, is_wide: bool) -> None:
         """Put the readings under the title where they do not fit beside it and the words of a widened axis."""
@@ -292,20 +273,21 @@ class ChartFrame(Card):
 
     def set_of_three(self, is_of_three: bool) -> None:
         """Let it be lower, where three charts share the room of two."""
-        self._is_of_three = is_of_three
         self.chart.set_of_three(is_of_three)
-        self._apply_theme()
+        above = 6 if is_of_three else 12
+        scaled(self.column.setContentsMargins, 16, above, 16, above)
+        scaled(self.column.setSpacing, 2 if is_of_three else 4)
 
     def set_moment_shown(self, is_shown: bool) -> None:
-        self._moment.setVisible(is_shown)
+        self.moment.setVisible(is_shown)
 
     def set_simulated(self, is_simulated: bool) -> None:
-        self._simulated.setVisible(is_simulated)
+        self.simulated.setVisible(is_simulated)
 
     def show_curves(self, time_s: FloatArray, curves: Mapping[Side, Curve]) -> None:
         self.chart.show_curves(time_s, curves)
         for side in Side:
-            for widget in (self._keys[side], self._values[side]):
+            for widget in (self.keys[side], self.values[side]):
                 widget.setVisible(side in curves)
         self._set_widened()
         self.chart.setAccessibleName(tr("{joint} during the recording").format(joint=title_in_words(self.kind)))
@@ -313,8 +295,8 @@ class ChartFrame(Card):
 
     def read(self, row: int | None, time_s: float | None) -> None:
         """Show the values of sample `row`."""
-        self._moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", MINUS))
-        for side, value in self._values.items():
+        self.moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", MINUS))
+        for side, value in self.values.items():
             curve = self.chart.curves.get(side)
             value.setText("" if row is None or curve is None else _reading(curve, row))
         self._reserve_room()
@@ -322,7 +304,7 @@ class ChartFrame(Card):
 
     def reading_in_words(self) -> str:
         return " ".join(
-            f"{name_of(self.kind.of(side))} {self._values[side].text()}." for side in Side if side in self.chart.curves
+            f"{name_of(self.kind.of(side))} {self.values[side].text()}." for side in Side if side in self.chart.curves
         )
 
     def in_words(self) -> str:
@@ -350,24 +332,16 @@ class ChartFrame(Card):
     def _reserve_room(self) -> None:
         """Make the readings as wide as they ever get, so that nothing jumps while the line moves."""
         for label, widest in (
-            (self._moment, "1000.00 s"),
-            *((value, "\N{MINUS SIGN}100.0° ± 10.0°") for value in self._values.values()),
+            (self.moment, "1000.00 s"),
+            *((value, "\N{MINUS SIGN}100.0° ± 10.0°") for value in self.values.values()),
         ):
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance(widest) if label.text() else 0)
 
     def _set_widened(self) -> None:
-        self._wide.setText(range_in_words(self.chart.range_deg).removesuffix("."))
-        self._wide.setVisible(self.chart.is_widened)
+        self.wide.setText(range_in_words(self.chart.range_deg).removesuffix("."))
+        self.wide.setVisible(self.chart.is_widened)
         self._wide_mark.setVisible(self.chart.is_widened)
         self._place()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        if self._is_of_three:
-            side, narrow = px(16), px(6)
-            self.column.setContentsMargins(side, narrow, side, narrow)
-            self.column.setSpacing(px(2))
-        self._reserve_room()
 
 
 def _reading(curve: Curve, row: int) -> str:

@@ -5,19 +5,20 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy
 
 from app.summary.course_lanes import CourseLane, CourseVisit, LaneLine, LanePoint
 from app.summary.course_words import day_of
 from app.summary.goals import goal_mark
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.theme import Theme
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
-from app.widgets.themed import Themed
 from app.wording.measures import least_span
 
+LEAST_WIDTH = 200
 INSET = 8  # px from the plot's edges to the first and last visit
 APART = 18  # px between two visits, whatever their days
 OVER, UNDER = 15, 8  # the values: a goal's words, half a dot
@@ -43,24 +44,25 @@ class LaneScale:
         return cls(middle - half, middle + half)
 
 
-class DatedPlot(Themed):
+class DatedPlot(Painted):
     """A plot over the dates of visits. Signals: `pointed` at the visit of a number, and `opened`."""
 
     pointed = Signal(int)
     opened = Signal(int)
 
-    def __init__(self) -> None:
+    def __init__(self, height: float) -> None:
         super().__init__()
         self.visits: tuple[CourseVisit, ...] = ()
         self._number: int | None = None
         self._places: list[float] = []
         self._places_of: object = None  # what they were found for; a pointer that moves asks for all of them
         self.setMouseTracking(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        scaled(self.setMinimumSize, LEAST_WIDTH, height)
 
     @property
     def plot(self) -> QRectF:
         """Where values lie."""
-        px = current_theme().px
         return QRectF(0, px(OVER), self.width(), self.height() - px(OVER) - px(UNDER))
 
     def point_at(self, number: int | None) -> None:
@@ -103,28 +105,17 @@ class DatedPlot(Themed):
             x = self.x_of(self._number)
             painter.drawLine(QPointF(x, 0), QPointF(x, self.height()))
 
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()
-
 
 class LanePlot(DatedPlot):
     """The values of a lane, over its goals and, between the legs, where healthy people are."""
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__(LEAST_HEIGHT)
         self.lane: CourseLane | None = None
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def show_lane(self, lane: CourseLane, visits: Sequence[CourseVisit]) -> None:
         self.lane, self.visits, self._number = lane, tuple(visits), None
         self.update()
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(200), px(LEAST_HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def y_of(self, value: float) -> float:
         assert self.lane is not None
@@ -144,12 +135,10 @@ class LanePlot(DatedPlot):
             texts.append(PaintedText(goal_mark(goal), box, theme.font(12), "ink2", align))
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         if self.lane is None:
             return
         theme, plot = current_theme(), self.plot
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if self.lane.healthy is not None:
             low, high = (self.y_of(end) for end in self.lane.healthy)
             painter.fillRect(QRectF(plot.left(), high, plot.width(), low - high), QColor(theme.colours.band_2sd))
@@ -161,8 +150,6 @@ class LanePlot(DatedPlot):
             painter.drawLine(QPointF(plot.left(), self.y_of(value)), QPointF(plot.right(), self.y_of(value)))
         for line in self.lane.lines:
             self._paint_line(painter, line)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _is_free(self, box: QRectF, *, at_left: bool) -> bool:
         """Whether no value lies where words at one end of a line would."""
@@ -199,18 +186,11 @@ class DateAxis(DatedPlot):
     """The day of every visit; those that would touch are left out, the first and the last stay."""
 
     def __init__(self) -> None:
-        super().__init__()
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        super().__init__(DATES)
 
     def show_visits(self, visits: Sequence[CourseVisit]) -> None:
         self.visits, self._number = tuple(visits), None
         self.update()
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(200), px(DATES))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def labels(self) -> dict[int, PaintedText]:
         """The dates that find room, by the number of their visit."""
@@ -228,11 +208,6 @@ class DateAxis(DatedPlot):
 
     def painted_texts(self) -> list[PaintedText]:
         return list(self.labels().values())
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        for text in self.painted_texts():
-            text.paint(painter, current_theme().colours)
 
 
 def _goal_pen(theme: Theme) -> QPen:

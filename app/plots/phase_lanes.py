@@ -9,16 +9,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QWheelEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme.current import current_theme, px
+from app.charts.marks import stretches
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import joined, later, tr, tr_n
 from core.body import Side
@@ -84,30 +87,28 @@ class PhaseFrame(Card):
     """Both lanes with their legend, and what is shown at the reading line."""
 
     def __init__(self) -> None:
-        self.lanes = PhaseLanes()
-        self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        self._chips = {side: Chip(side) for side in Side}
-        self._readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
-        self._title, self._legend, self._reading = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
-        self._head = QGridLayout()
         super().__init__(spacing=6)
+        self.lanes = PhaseLanes()
+        self.simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self._chips = {side: Chip(side) for side in Side}
+        self.readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
+        legend = (part for phase, word in LEGEND for part in (Swatch(phase), Text(tr(word), size=12, tone="ink2")))
+        title = Text(tr("Gait phases"), size=14, weight=SEMIBOLD)
+        self._title = lay_out(QHBoxLayout(), title, self.simulated, spacing=8)
+        self._legend = lay_out(QHBoxLayout(), *legend, 1, spacing=8)
+        self._reading = lay_out(QHBoxLayout(), 1, spacing=8)
+        self._head = QGridLayout()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        for phase, word in LEGEND:
-            self._legend.addWidget(Swatch(phase))
-            self._legend.addWidget(Text(tr(word), size=12, tone="ink2"))
-        self._legend.addStretch(1)
-        self._title.addWidget(Text(tr("Gait phases"), size=14, weight=SEMIBOLD))
-        self._title.addWidget(self._simulated)
-        self._reading.addStretch(1)
         for side in Side:
             policy = self._chips[side].sizePolicy()
             policy.setRetainSizeWhenHidden(True)  # nothing may jump when the line comes
             self._chips[side].setSizePolicy(policy)
-            self._reading.addWidget(self._chips[side])
-            self._reading.addWidget(self._readings[side])
-        self.column.addLayout(self._head)
-        self.column.addWidget(self.lanes)
+            lay_out(self._reading, self._chips[side], self.readings[side])
+        lay_out(self.column, self._head, self.lanes)
+        scaled(self._head.setHorizontalSpacing, 12)
+        scaled(self._head.setVerticalSpacing, 4)
         self.set_narrow(is_narrow=False)
+        on_theme(self._reserve_room)
 
     def does_fit(self, width: int) -> bool:
         """Whether title, legend and reading have room beside each other in `width` px."""
@@ -131,10 +132,10 @@ class PhaseFrame(Card):
 
     def show_gait(self, time_s: FloatArray, gait: Mapping[Side, SideGait], is_simulated: bool) -> None:
         self.lanes.show_lanes({side: Lane.of(time_s, gait[side]) for side in Side if side in gait})
-        self._simulated.setVisible(is_simulated)
+        self.simulated.setVisible(is_simulated)
         for side in Side:
             self._chips[side].hide()
-            self._readings[side].setVisible(side in gait)
+            self.readings[side].setVisible(side in gait)
         self.lanes.setAccessibleName(tr("Gait phases during the recording"))
         self.lanes.setAccessibleDescription(self.in_words())
         self.setVisible(bool(gait))
@@ -143,13 +144,13 @@ class PhaseFrame(Card):
     def read(self, row: int | None, time_s: float | None) -> None:
         """Name what each foot does at sample `row`."""
         for side, lane in self.lanes.lanes.items():
-            self._readings[side].setText("" if row is None else lane.in_words(row))
+            self.readings[side].setText("" if row is None else lane.in_words(row))
             self._chips[side].setVisible(row is not None)
         self._reserve_room()
         self.lanes.set_cursor(time_s)
 
     def reading_in_words(self) -> str:
-        return " ".join(f"{_foot_name(side)}: {self._readings[side].text()}." for side in self.lanes.lanes)
+        return " ".join(f"{_foot_name(side)}: {self.readings[side].text()}." for side in self.lanes.lanes)
 
     def in_words(self) -> str:
         """Say how often each foot landed and left, for who cannot see the lanes."""
@@ -172,25 +173,15 @@ class PhaseFrame(Card):
         return " ".join(stated)
 
     def _reserve_room(self) -> None:
-        for side, label in self._readings.items():
+        for side, label in self.readings.items():
             widest = max(
                 label.fontMetrics().horizontalAdvance(tr(word))
                 for word in (*PHASE_WORDS.values(), *EVENT_WORDS.values())
             )
             label.setMinimumWidth(widest if side in self.lanes.lanes else 0)
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for part in (self._title, self._legend):
-            part.setSpacing(px(8))
-        self._reading.setSpacing(px(8))
-        self._head.setHorizontalSpacing(px(12))
-        self._head.setVerticalSpacing(px(4))
-        self._reserve_room()
 
-
-class PhaseLanes(QWidget):
+class PhaseLanes(Painted):
     """Left above right, as wide as the curves above it. The mouse acts as on the curves."""
 
     accessible_role = QAccessible.Role.Chart
@@ -203,46 +194,40 @@ class PhaseLanes(QWidget):
         super().__init__()
         self.lanes: Mapping[Side, Lane] = {}
         self._visible_s = (0.0, 1.0)
-        self._cursor_s: float | None = None
+        self.cursor_s: float | None = None
         self._held_x: float | None = None
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def show_lanes(self, lanes: Mapping[Side, Lane]) -> None:
         self.lanes = lanes
-        self._refresh()
+        self.updateGeometry()
+        self.update()
 
     def see(self, first_s: float, last_s: float) -> None:
         self._visible_s = (first_s, last_s)
         self.update()
 
     def set_cursor(self, time_s: float | None) -> None:
-        self._cursor_s = time_s
+        self.cursor_s = time_s
         self.update()
 
-    def sizeHint(self) -> QSize:
+    def minimumSizeHint(self) -> QSize:
         px, count = current_theme().px, max(len(self.lanes), 1)
         return QSize(px(320), count * px(LANE) + (count - 1) * px(BETWEEN))
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def area(self, side: Side) -> QRectF:
         """The lane of a leg in px of the widget."""
-        px = current_theme().px
         top = list(self.lanes).index(side) * (px(LANE) + px(BETWEEN))
         return QRectF(px(AXIS_WIDTH), top, self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), px(LANE))
 
     def x_of(self, time_s: FloatArray) -> FloatArray:
         first, last = self._visible_s
-        px = current_theme().px
         width = self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN)
         return px(AXIS_WIDTH) + width * (time_s - first) / (last - first)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for side, lane in self.lanes.items():
             area, chip = self.area(side), theme.px(CHIP)
             paint_chip(painter, QRectF(0, area.center().y() - chip / 2, chip, chip), side, theme)
@@ -250,10 +235,10 @@ class PhaseLanes(QWidget):
             painter.setClipRect(area.adjusted(-0.5, 0, 0.5, 0))
             self._paint_lane(painter, lane, area, theme.curve(side), theme.soft(side))
             painter.restore()
-        if self._cursor_s is not None and self._visible_s[0] <= self._cursor_s <= self._visible_s[1]:
+        if self.cursor_s is not None and self._visible_s[0] <= self.cursor_s <= self._visible_s[1]:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
             painter.setPen(QColor(theme.colours.ink))
-            x = float(self.x_of(np.array(self._cursor_s)))
+            x = float(self.x_of(np.array(self.cursor_s)))
             painter.drawLine(QPointF(x, 0), QPointF(x, self.height()))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -295,38 +280,27 @@ class PhaseLanes(QWidget):
     ) -> None:
         """Where the phases are known, in one piece each, with what to do."""
         theme = current_theme()
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
         painter.setFont(theme.font(12))
-        for start, end in edges.reshape(-1, 2).tolist():
-            box = QRectF(left[start], area.top(), right[end - 1] - left[start], area.height())
+        for start, last in stretches(known):
+            box = QRectF(left[start], area.top(), right[last] - left[start], area.height())
             painter.fillRect(box, QColor(theme.colours.sunken))
             seen = box.intersected(area)
             painter.setPen(QColor(theme.colours.ink2))
             if painter.fontMetrics().horizontalAdvance(tr(ZOOM_IN)) + theme.px(16) < seen.width():
                 painter.drawText(seen, Qt.AlignmentFlag.AlignCenter, tr(ZOOM_IN))
 
-    def _refresh(self) -> None:
-        self.updateGeometry()
-        self.update()
 
-
-class Swatch(QWidget):
+class Swatch(Painted):
     """How one phase looks, in grey."""
 
     def __init__(self, phase: Phase) -> None:
         super().__init__()
         self._phase = phase
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, 22, 12)
 
-    def sizeHint(self) -> QSize:
-        return QSize(px(22), px(12))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        c = theme.colours
-        paint_phase(painter, self._phase, QRectF(self.rect()), QColor(c.ink2), QColor(c.band_1sd), theme)
+    def draw(self, painter: QPainter) -> None:
+        c = current_theme().colours
+        paint_phase(painter, self._phase, QRectF(self.rect()), QColor(c.ink2), QColor(c.band_1sd), current_theme())
 
 
 def paint_phase(painter: QPainter, phase: Phase, box: QRectF, full: QColor, pale: QColor, theme: Theme) -> None:

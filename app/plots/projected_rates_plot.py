@@ -5,15 +5,15 @@ The turning beside the axis, as paired and with one axis reversed.
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPen, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.summary.diagnostics import parts_deg_s
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.body import Side
 from core.published.figures import ProjectedRates
@@ -27,7 +27,7 @@ FOOT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom
 STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 
 
-class ProjectedRatesPlot(Themed):
+class ProjectedRatesPlot(Painted):
     """Two panels of one size and one scale."""
 
     accessible_role = QAccessible.Role.Chart
@@ -67,20 +67,11 @@ class ProjectedRatesPlot(Themed):
     def far_pen(self) -> QPen:
         return current_theme().pen(current_theme().colours.ink, OTHER_PX)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        width = px(2 * LEAST_PANEL + BETWEEN)
-        return QSize(width, self._height_for(width))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self.setFixedHeight(self._height_for(event.size().width()))
 
     def _height_for(self, width: int) -> int:
-        px = current_theme().px
         return min((width - px(BETWEEN)) // 2, px(MOST_PANEL)) + px(TITLE + SCALE)
 
     def painted_texts(self) -> list[PaintedText]:
@@ -96,13 +87,11 @@ class ProjectedRatesPlot(Themed):
             texts.append(PaintedText(words, below, theme.font(12), "ink2", CENTRE))
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         if self._shown is None:
             return
         theme = current_theme()
         c = theme.colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for panel, distal in zip(self._panels(), (self._shown.distal, self._shown.reversed_distal), strict=True):
             painter.setPen(theme.pen(c.line, 1))
             painter.drawRect(panel)
@@ -120,8 +109,6 @@ class ProjectedRatesPlot(Themed):
             painter.setBrush(QColor(c.ink))
             painter.drawEllipse(far.at(0), theme.px(START) - 1, theme.px(START) - 1)
             painter.setBrush(Qt.BrushStyle.NoBrush)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def _polygon(self, z: ComplexArray, panel: QRectF) -> QPolygonF:
         x, y = parts_deg_s(z)
@@ -129,7 +116,6 @@ class ProjectedRatesPlot(Themed):
         return pg.functions.arrayToQPolygonF(panel.center().x() + scale * x, panel.center().y() - scale * y)
 
     def _panels(self) -> tuple[QRectF, QRectF]:
-        px = current_theme().px
         side = min((self.width() - px(BETWEEN)) / 2, self.height() - px(TITLE + SCALE)) - 1
         return QRectF(0.5, px(TITLE), side, side), QRectF(side + px(BETWEEN) + 0.5, px(TITLE), side, side)
 
@@ -145,6 +131,6 @@ class ProjectedRatesPlot(Themed):
         return current_theme().font(14, weight)
 
     def _apply_theme(self) -> None:
-        self.setMinimumWidth(self.sizeHint().width())
+        self.setMinimumWidth(current_theme().px(2 * LEAST_PANEL + BETWEEN))
         self.setFixedHeight(self._height_for(max(self.width(), self.minimumWidth())))
         self.update()

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHideEvent, QKeyEvent, QMouseEvent, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.summary.drawn_legs import HALF_WIDTHS_M
@@ -14,10 +14,12 @@ from app.summary.mean_legs import MeanLegs, ThinBend, bent_by
 from app.theme.current import current_theme, px
 from app.theme.leg_chip import paint_chip
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.limb import limb_outline
+from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
@@ -49,15 +51,10 @@ class StrideLegs(Card):
         self.percent = 0.0
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._where = Text(size=12, tone="ink2")
-        head = QHBoxLayout()
-        head.addWidget(Text(tr("Legs"), size=16, weight=SEMIBOLD))
-        head.addStretch(1)
-        head.addWidget(self._where)
+        head = lay_out(QHBoxLayout(), Text(tr("Legs"), size=16, weight=SEMIBOLD), 1, self._where)
         self.picture = _Picture()
         self.note = Text(tr(NO_LEGS), size=12, tone="ink2", wraps=True)
-        self.column.addLayout(head)
-        self.column.addWidget(self.note)
-        self.column.addWidget(self.picture, 1)
+        lay_out(self.column, head, self.note, (self.picture, 1))
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)
@@ -81,13 +78,7 @@ class StrideLegs(Card):
         knee_deg: Mapping[Side, FloatArray | None],
         thin: Mapping[Side, ThinBend] | None = None,
     ) -> None:
-        """Show the legs of another walk, where the cursor was.
-
-        Parameters
-        ----------
-        knee_deg
-            What is read beside each leg that was measured (101,); None where it is not reported.
-        """
+        """Show another walk's legs at the cursor's place; `knee_deg`: (101,) by side, None where not reported."""
         self.stop()
         self.picture.legs, self.picture.thin = legs, thin or {}
         self.picture.sides = [side for side in Side if side in knee_deg]
@@ -144,7 +135,7 @@ class StrideLegs(Card):
         self.show_percent(self.percent + 100.0 * FRAME_MS / 1000.0 / PLAYED_CYCLE_S)
 
 
-class _Picture(Themed):
+class _Picture(Painted):
     """Left filled, right outlined and dashed on top; the thin line's shank and foot in a line alone."""
 
     def __init__(self) -> None:
@@ -156,13 +147,9 @@ class _Picture(Themed):
         self.percent = 0.0
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
+    def minimumSizeHint(self) -> QSize:
         words = QFontMetrics(current_theme().font(SMALL)).horizontalAdvance(tr("not reported"))
         return QSize(max(px(LEAST_PICTURE[0]), px(CHIP + CHIP_GAP) + words + 1), px(LEAST_PICTURE[1]))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def readings(self) -> dict[Side, str]:
         """Each knee's angle at the cursor."""
@@ -172,20 +159,17 @@ class _Picture(Themed):
             if curve is None or not np.isfinite(curve).all():
                 continue
             angle = float(np.interp(self.percent, np.arange(len(curve)), curve))
-            found[side] = tr("knee {angle:.0f}°").format(angle=angle).replace("-", "\N{MINUS SIGN}")
+            found[side] = tr("knee {angle:.0f}°").format(angle=angle).replace("-", MINUS)
         return found
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         if self.legs is None:
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         rows = px(ROW) * len(self.sides)
         self._paint_legs(painter, self.legs, QRectF(0, 0, self.width(), self.height() - rows))
         for side, text in self._texts().items():
             top = text.box.top() + px((ROW - CHIP) / 2)
             paint_chip(painter, QRectF(0, top, px(CHIP), px(CHIP)), side, current_theme())
-            text.paint(painter, current_theme().colours)
 
     def painted_texts(self) -> list[PaintedText]:
         return list(self._texts().values())
@@ -205,7 +189,7 @@ class _Picture(Themed):
         return found
 
     def _paint_legs(self, painter: QPainter, legs: MeanLegs, room: QRectF) -> None:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         poses = {side: legs.pose_m(side, self.percent) for side in legs.points_m}
         points = np.concatenate([points_m.reshape(-1, 2) for points_m in legs.points_m.values()])
         above = 0.0 if legs.tilt_rad is None else PELVIS_M + PELVIS_HALF_M
@@ -265,7 +249,3 @@ class _Picture(Themed):
         for joint in points[1:3]:
             if math.isfinite(joint.x()):
                 painter.drawEllipse(joint, theme.px(3), theme.px(3))
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -8,15 +8,8 @@ FEW = 2  # samples per column that are drawn as they are
 
 
 def thin(time_s: FloatArray, values: FloatArray, columns: int) -> tuple[FloatArray, FloatArray]:
-    """Keep the lowest and the highest value of each of `columns` equal parts, in the order they came.
-
-    A part without any value stays a gap; a missing sample beside others does not widen into one. What has no more than
-    `FEW` samples per column is returned as it is.
-
-    Parameters
-    ----------
-    time_s, values : (n,)
-        Ascending; NaN in gaps.
+    """Keep the lowest and highest value per column, in order; `time_s` ascending, both (n,), NaN in gaps.
+    Empty columns stay gaps, single missing samples do not; up to `FEW` samples per column stay as they are.
     """
     per_column = len(values) // max(columns, 1)
     if per_column <= FEW:
@@ -33,16 +26,7 @@ def thin(time_s: FloatArray, values: FloatArray, columns: int) -> tuple[FloatArr
 def envelope(
     time_s: FloatArray, low: FloatArray, high: FloatArray, columns: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Reduce a band to the lowest and the highest value of each of `columns` equal parts.
-
-    Gaps and few samples are treated as in `thin`. What comes out never crosses itself, which takes a thousandth of the
-    time to fill.
-
-    Parameters
-    ----------
-    time_s, low, high : (n,)
-        Ascending; NaN in gaps.
-    """
+    """Reduce a band (n,) to the extremes of each column, gaps as in `thin`; the result never crosses itself."""
     per_column = len(time_s) // max(columns, 1)
     if per_column <= FEW:
         return time_s, low, high

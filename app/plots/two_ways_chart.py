@@ -4,14 +4,14 @@ from typing import TypeVar
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px, scaled
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
@@ -43,6 +43,7 @@ class TwoWaysChart(Themed):
         self.range_deg = KNEE_DEG
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        scaled(self.setMinimumSize, *LEAST_SIZE)
 
     def show_angles(
         self, joint: Joint, time_s: FloatArray, from_rates: FloatArray, from_forces: FloatArray, fused: FloatArray
@@ -65,7 +66,7 @@ class TwoWaysChart(Themed):
         self.visible_s = first_s, last_s
         is_seen = (self.time_s >= first_s) & (self.time_s <= last_s)
         self.range_deg = range_for(self._fixed, [curve[is_seen] for curve in self.curves_deg[1:]])
-        self._redraw()
+        self._apply_theme()
 
     @property
     def cut_share(self) -> float:
@@ -77,15 +78,7 @@ class TwoWaysChart(Themed):
         seen = seen[np.isfinite(seen)]
         return float(np.mean((seen < self.range_deg[0]) | (seen > self.range_deg[1]))) if len(seen) else 0.0
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def plot_area(self) -> QRectF:
-        px = current_theme().px
         left = px(AXIS_WIDTH)
         return QRectF(left, px(TOP), self.width() - left - px(RIGHT_MARGIN), self.height() - px(TOP + BELOW))
 
@@ -191,13 +184,9 @@ class TwoWaysChart(Themed):
         stated = [tr("{seconds} s").format(seconds=figure_text(t, ".1f") if step < 1 else f"{t:.0f}") for t in ticks]
         return [(float(t), words) for t, words in zip(ticks, stated, strict=True)]
 
-    def _redraw(self) -> None:
+    def _apply_theme(self) -> None:
         self._picture = None
         self.update()
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self._redraw()
 
 
 def _ascending(time_s: FloatArray) -> FloatArray:

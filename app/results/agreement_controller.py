@@ -4,9 +4,10 @@ References are read in the limited child, beside the screen.
 """
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,11 +54,8 @@ class _SharperAgreement:
 class AgreementController(QObject):
     """Works for one page; newer references take the older ones' place.
 
-    Signals
-    -------
-    writing
-        The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be notified of an export.
+    `writing`: the folder that was chosen, and the call that writes the files into it: whoever shows the page knows on
+    which thread, and who must be notified of an export.
     """
 
     writing = Signal(object, object)
@@ -71,8 +69,9 @@ class AgreementController(QObject):
         self._dialog: QFileDialog | None = None
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        page.reference_requested.connect(self._on_reference_requested)
-        page.save_requested.connect(self._on_save_requested)
+        for asked in (page.choose.clicked, page.waiting.pressed):
+            asked.connect(self._on_reference_requested)
+        page.save.clicked.connect(self._on_save_requested)
         page.sheets.sharper_required.connect(self._on_sharper_required)
 
     def show(self, session: "Session", analysis: Analysis) -> None:
@@ -110,7 +109,10 @@ class AgreementController(QObject):
 
     def _on_sharper_required(self) -> None:
         if self._study is not None and self._session is not None and self._background.is_idle:
-            self._background.start(_drawing(self._study, self._session, self._page.sheets.ppi))
+            study, session, ppi = self._study, self._session, self._page.sheets.ppi
+            self._background.start(
+                lambda _report: _SharperAgreement(_pages(as_shown(study, session.recordings), session, ppi))
+            )
 
     def _on_failed(self, error: Exception) -> None:
         if isinstance(error, FileRefusedError):
@@ -133,7 +135,7 @@ class AgreementController(QObject):
 
     def _on_folder_selected(self, folder: str) -> None:
         if self._study is not None and self._session is not None:
-            self.writing.emit(Path(folder), _writing(self._study, self._session, Path(folder)))
+            self.writing.emit(Path(folder), partial(_write, self._study, self._session, Path(folder)))
 
 
 def _comparing(session: "Session", analysis: Analysis, paths: Sequence[Path], ppi: float) -> Work:
@@ -153,21 +155,11 @@ def _comparing(session: "Session", analysis: Analysis, paths: Sequence[Path], pp
     return work
 
 
-def _drawing(study: AgreementStudy, session: "Session", ppi: float) -> Work:
-    def work(_report: Report) -> object:
-        return _SharperAgreement(_pages(as_shown(study, session.recordings), session, ppi))
-
-    return work
-
-
 def _pages(shown: AgreementStudy, session: "Session", ppi: float) -> list[bytes]:
     made_at, version = datetime.now().astimezone(), version_of("gaitwright")
     return agreement_pages(shown, session, pictures_of(shown, session.patient), made_at, version, ppi)
 
 
-def _writing(study: AgreementStudy, session: "Session", folder: Path) -> Callable[[], None]:
-    def write() -> None:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_agreement(study, session, folder, datetime.now().astimezone(), version_of("gaitwright"))
-
-    return write
+def _write(study: AgreementStudy, session: "Session", folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    write_agreement(study, session, folder, datetime.now().astimezone(), version_of("gaitwright"))

@@ -2,17 +2,15 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import ReadingArea
 from app.widgets.sentence_page import SentencePage
 from app.widgets.sheets import Sheet, Sheets
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.translation import joined, later, tr
 
 KINDS = later(
@@ -22,22 +20,8 @@ KINDS = later(
 )
 
 
-class AgreementPage(Themed):
-    """It is computed elsewhere.
-
-    Signals
-    -------
-    closed
-        Back to the results.
-    reference_requested
-        Files of an optical system are to be chosen.
-    save_requested
-        PDF and tables as files.
-    """
-
-    closed = Signal()
-    reference_requested = Signal()
-    save_requested = Signal()
+class AgreementPage(QWidget):
+    """It is computed elsewhere; `choose` and `waiting` ask for files of an optical system."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,28 +31,13 @@ class AgreementPage(Themed):
         self.note = Text(tone="ink2", wraps=True)
         self.waiting = SentencePage()
         self.sheets = Sheets()
-        self.reading = ReadingArea()
-        self.reading.setFrameShape(QFrame.Shape.NoFrame)
-        self.reading.setWidgetResizable(True)
-        self.reading.setWidget(self.sheets)
-        self.reading.setAccessibleName(tr("Agreement report"))
+        self.reading = ReadingArea(self.sheets, tr("Agreement report"))
         self._stack = QStackedWidget()
         for page in (self.waiting, self.reading):
             self._stack.addWidget(page)
-        self._head = QHBoxLayout()
-        self._head.addWidget(self.back)
-        self._head.addWidget(self.note, 1)
-        self._head.addWidget(self.choose)
-        self._head.addWidget(self.save)
-        self._column = QVBoxLayout(self)
-        self._column.addLayout(self._head)
-        self._column.addWidget(self._stack, 1)
-        self.back.clicked.connect(self.closed)
-        self.choose.clicked.connect(self.reference_requested)
-        self.waiting.pressed.connect(self.reference_requested)
-        self.save.clicked.connect(self.save_requested)
+        head = lay_out(QHBoxLayout(), self.back, (self.note, 1), self.choose, self.save, spacing=12)
+        lay_out(QVBoxLayout(self), head, (self._stack, 1), margins=(24, 16, 24, 12), spacing=12)
         self.show_nothing()
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -113,9 +82,3 @@ class AgreementPage(Themed):
         self.sheets.show_pages([])
         self.waiting.show_sentence(what, then, button)
         self._stack.setCurrentWidget(self.waiting)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(16), px(24), px(12))
-        self._column.setSpacing(px(12))
-        self._head.setSpacing(px(12))

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QGridLayout, QHBoxLayout, QVBoxLayou
 from app.charts.cycles import Band, SideCycle
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_charts import CycleCharts
-from app.results.compared_card import ComparedCard, scrolling
+from app.results.compared_card import ComparedCard
 from app.results.compared_words import (
     conclusion,
     days_of,
@@ -27,15 +27,16 @@ from app.summary.comparison import Comparison, Contrast, SideRow, compare_sides,
 from app.summary.conditions import Part, left_out_of_parts
 from app.summary.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.summary.visits import ComparedVisits, condition_in_words
-from app.theme.current import current_theme
+from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import JointKind, Side
@@ -62,16 +63,10 @@ NOTHING = {
 }
 
 
-class ComparePage(Themed):
-    """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well.
+class ComparePage(QWidget):
+    """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well."""
 
-    Signals
-    -------
-    visits_requested
-        The earlier visits are requested, and not known yet: `show_visits` is to follow.
-    """
-
-    visits_requested = Signal()
+    visits_requested = Signal()  # the earlier visits are requested, and not known yet: `show_visits` is to follow
 
     def __init__(self) -> None:
         super().__init__()
@@ -108,7 +103,6 @@ class ComparePage(Themed):
         self.card = ComparedCard()
         self._build()
         self._connect()
-        self._apply_theme()
 
     # what is shown
 
@@ -148,10 +142,7 @@ class ComparePage(Themed):
             self.visits_requested.emit()
 
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
-        """Show the conditions that visits up to this one share; `walked` states which of them each visit has.
-
-        `every`: all conditions of all visits, any two or more of which can be chosen.
-        """
+        """Show the conditions that visits up to this one share; `every`: all of all visits, free to choose."""
         self._visits, self._walked, self._is_reading = tuple(visits), walked, False
         self._every = tuple(every)
         self._offer_kinds()
@@ -163,10 +154,7 @@ class ComparePage(Themed):
         self.side_charts.set_band_shown(is_shown)
 
     def set_room(self, is_compact: bool, is_spacious: bool, has_two_charts: bool, *, has_view: bool) -> None:
-        """Make curves and differences views of their own where room is short; where there is plenty all stand there.
-
-        Without `has_view` the page around places the choice of views.
-        """
+        """Split curves and differences if short of room; without `has_view` the owner places the choice."""
         was_compact, was_spacious = self._is_compact, self._is_spacious
         self._is_compact, self._is_spacious, self._has_view = is_compact, is_spacious, has_view
         self.view.set_offered(CURVES, is_compact)
@@ -197,34 +185,21 @@ class ComparePage(Themed):
     # how it is laid out
 
     def _build(self) -> None:
-        self._grid_room, self._grid = QWidget(), QGridLayout()
-        self._grid_room.setLayout(self._grid)
-        self._grid.setContentsMargins(0, 0, 0, 0)
+        room, self._charts, self._words = QWidget(), QWidget(), QWidget()
+        grid = QGridLayout(room)
+        grid.setContentsMargins(0, 0, 0, 0)
+        scaled(grid.setSpacing, 12)
         for (side, kind), frame in self.frames.items():
-            self._grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
-        self._charts = QWidget()
-        self._left = QVBoxLayout(self._charts)
-        self._left.setContentsMargins(0, 0, 0, 0)
-        self._curves = scrolling(self._grid_room)
-        self._left.addWidget(self._curves, 1)
-        self._left.addWidget(self.side_charts, 1)
-        self._left.addWidget(self.chips)
-        self._words = QWidget()
-        self._head = QHBoxLayout(self._words)
-        self._head.setContentsMargins(0, 0, 0, 0)
-        self._reported = QVBoxLayout()
-        self._reported.addWidget(self.conclusion)
-        self._reported.addWidget(self.error)
-        self._reported.addStretch(1)
-        self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._head.addLayout(self._reported, 1)
-        self._columns = QHBoxLayout()
-        self._columns.addWidget(self._charts, 1)
-        self._columns.addWidget(self.card)
-        self._page = QVBoxLayout(self)
-        self._page.setContentsMargins(0, 0, 0, 0)
-        self._page.addWidget(self.nothing)
-        self._page.addLayout(self._columns, 1)
+            grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
+        self._curves = scrolled(room, is_upright=False)
+        charts = ((self._curves, 1), (self.side_charts, 1), self.chips)
+        self._left = lay_out(QVBoxLayout(self._charts), *charts, margins=0, spacing=12)
+        reported = lay_out(QVBoxLayout(), self.conclusion, self.error, 1, spacing=4)
+        mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
+        self._head = lay_out(QHBoxLayout(self._words), mark, (reported, 1), margins=0, spacing=12)
+        columns = lay_out(QHBoxLayout(), (self._charts, 1), self.card, spacing=12)
+        self._page = lay_out(QVBoxLayout(self), self.nothing, (columns, 1), margins=0, spacing=12)
+        on_theme(self._fit_card)
 
     def _connect(self) -> None:
         self.kinds.currentIndexChanged.connect(self._on_kind_changed)
@@ -274,21 +249,17 @@ class ComparePage(Themed):
 
     def _offer_kinds(self) -> None:
         before = self.kinds.currentData()
-        self.kinds.blockSignals(True)
-        self.kinds.clear()
-        self.kinds.addItem(tr("Walks of this visit"), Contrast.CONDITIONS)
+        kinds: list[tuple[str, object]] = [(tr("Walks of this visit"), Contrast.CONDITIONS)]
         if self._has_visits and not self._visits:
-            self.kinds.addItem(tr("Visits"), Contrast.VISITS)
+            kinds.append((tr("Visits"), Contrast.VISITS))
         for number, visits in enumerate(self._visits or ()):  # the first keeps the data of them all
             stated = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
-            self.kinds.addItem(stated, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS)
+            kinds.append((stated, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS))
         if len(self._every) > 1:
-            self.kinds.addItem(tr("Any visits and conditions"), Contrast.CHOSEN)
-        self.kinds.addItem(self._affected_words, Contrast.SIDES)
+            kinds.append((tr("Any visits and conditions"), Contrast.CHOSEN))
+        kinds.append((self._affected_words, Contrast.SIDES))
         first = Contrast.CONDITIONS if len(self._conditions) > 1 else Contrast.SIDES
-        self.kinds.setCurrentIndex(max(self.kinds.findData(before if before is not None else first), 0))
-        self.kinds.blockSignals(False)
-        self.kinds.updateGeometry()
+        self.kinds.offer(kinds, before if before is not None else first)
         self._on_kind_changed()
 
     def _on_kind_changed(self) -> None:
@@ -327,16 +298,9 @@ class ComparePage(Themed):
     def _offer_bases(self, parts: Sequence[Part]) -> None:
         pattern = tr("Walk: {letter}") if self.kind is Contrast.SIDES else tr("Starting point: {letter}")
         shown = [part for part in parts if self.kind is Contrast.SIDES or part.letter in self.chips.chosen]
-        before = self.bases.currentData()
-        self.bases.blockSignals(True)
-        self.bases.clear()
-        for part in shown:
-            self.bases.addItem(pattern.format(letter=part.letter), part.letter)
         last = len(shown) - 1 if self.kind is Contrast.SIDES else 0
-        found = self.bases.findData(before)
-        self.bases.setCurrentIndex(found if found >= 0 else last)
-        self.bases.blockSignals(False)
-        self.bases.updateGeometry()
+        lines = [(pattern.format(letter=part.letter), part.letter) for part in shown]
+        self.bases.offer(lines, self.bases.currentData(), last)
         self.bases.setEnabled(len(shown) > 1)
 
     def _on_turned(self) -> None:
@@ -350,10 +314,7 @@ class ComparePage(Themed):
         self._show()
 
     def choose_pair(self, number: int, *, is_second: bool) -> None:
-        """Show two alone: the one of this number from 0 against the one it was changed from, or the first.
-
-        `is_second`: this one is what the one shown is compared with.
-        """
+        """Show part `number` (from 0) beside its base, or the first; `is_second`: as base of the part shown."""
         parts = self._parts()
         if self.kind is Contrast.SIDES or not 0 <= number < len(parts) or len(parts) < 2:
             return
@@ -468,10 +429,5 @@ class ComparePage(Themed):
         self.conclusion.setText(" ".join([*stated, by_hand] if by_hand else stated))
         self._mark.setVisible(is_marked)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        for layout in (self._page, self._columns, self._left, self._head):
-            layout.setSpacing(px(12))
-        self._grid.setSpacing(px(12))
-        self._reported.setSpacing(px(4))
+    def _fit_card(self) -> None:
         self.card.fit(is_alone=self._charts.isHidden())

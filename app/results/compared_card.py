@@ -2,15 +2,16 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.plots.difference_plot import DifferencePlot
 from app.results.compared_plot import comparison_groups, side_groups
 from app.results.compared_table import comparison_table, has_brief_table, side_table
 from app.summary.comparison import Comparison, Contrast, SideRow
-from app.theme.current import current_theme, px
+from app.theme.current import px
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
@@ -28,6 +29,7 @@ class ComparedCard(Card):
     """Between visits the table is brief where there is no room for all measures, until all are asked for."""
 
     def __init__(self) -> None:
+        super().__init__(padding=PADDING)
         self.title = Text(size=16, weight=SEMIBOLD)
         self.all_measures = Toggle(tr("All measures"), "", is_on=False)
         self.all_measures.set_face(height=TOGGLE)
@@ -36,17 +38,9 @@ class ComparedCard(Card):
         self._found: Comparison | None = None
         self._is_compact = self._is_spacious = False
         content = QWidget()
-        self._content = QVBoxLayout(content)
-        self._content.setContentsMargins(0, 0, 0, 0)
-        head = QHBoxLayout()
-        head.addWidget(self.title, 1)
-        head.addWidget(self.all_measures)
-        self._content.addLayout(head)
-        self._content.addWidget(self.plot)
-        self._content.addWidget(self.table)
-        self._content.addStretch(1)
-        self.area = scrolling(content)
-        super().__init__(padding=PADDING)
+        head = lay_out(QHBoxLayout(), (self.title, 1), self.all_measures)
+        self._content = lay_out(QVBoxLayout(content), head, self.plot, self.table, 1, margins=0, spacing=8)
+        self.area = scrolled(content, is_upright=False)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.column.addWidget(self.area, 1)
         self.all_measures.toggled.connect(self._show_table)
@@ -83,7 +77,6 @@ class ComparedCard(Card):
 
     def fit(self, *, is_alone: bool) -> None:
         """Leave the curves beside it the larger part."""
-        px = current_theme().px
         least = LEAST_IF_SPACIOUS if self._is_spacious else LEAST
         shown = [widget for widget in (self.plot, self.table) if not widget.isHidden()]
         needed = max([px(least), *(widget.minimumWidth() + px(2 * PADDING + SCROLL_BAR) for widget in shown)])
@@ -104,17 +97,3 @@ class ComparedCard(Card):
     def _can_be_brief(self) -> bool:
         found = self._found
         return found is not None and found.kind is Contrast.VISITS and not self._is_spacious and has_brief_table(found)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._content.setSpacing(px(8))
-
-
-def scrolling(content: QWidget) -> QScrollArea:
-    """`content` over all of its room, scrolling where that is too small."""
-    area = QScrollArea()
-    area.setWidgetResizable(True)
-    area.setFrameShape(QFrame.Shape.NoFrame)
-    area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-    area.setWidget(content)
-    return area

@@ -32,14 +32,8 @@ TableOfParts = tuple[list[TableColumn], list[TableRow]]
 
 
 def comparison_table(found: Comparison, most_visits: int, *, is_brief: bool = False) -> TableOfParts:
-    """Every measure of each leg: the values of all parts, the changes, and the error of the last of these.
-
-    Parameters
-    ----------
-    most_visits
-        As many have a column of their own: that which all are compared with, and the latest ones. Trends have all.
-    is_brief
-        Without the measures that say much the same as others, unless a change of theirs exceeds its error.
+    """Give each leg's measures: values of all parts, changes, error of the last. Trends have all visits.
+    `most_visits`: columns at most, base and latest; `is_brief`: no near-duplicates unless beyond error.
     """
     rows: dict[tuple[str, Side], list[Compared]] = {}
     for row in sorted(found.changes, key=lambda row: WALK_FIRST.get(row.measure.column, len(WALK_FIRST))):

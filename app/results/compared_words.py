@@ -116,15 +116,7 @@ def side_sentence(row: SideRow, first: Side, second: Side) -> str:
 
 
 def conclusion(worth: Sequence[str], reported: Sequence[Compared | SideRow], latest: Part | None = None) -> list[str]:
-    """The sentences that are worth it; without one, whether any difference exceeds its error, and the largest.
-
-    Parameters
-    ----------
-    reported
-        The rows that the table shows; nothing is reported about any others.
-    latest
-        The visit that all of them lead to; None: they are those of any parts.
-    """
+    """Give the sentences worth it, else whether any difference exceeds its error, and the largest."""
     if len(worth) > MOST_STATED:
         return [*worth[:MOST_STATED], tr("The table shows all differences.")]
     if worth:

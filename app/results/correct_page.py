@@ -2,22 +2,24 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.body import name_of
 from app.wording.translation import capitalised, tr
 from core.body import Joint
+
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,24 +42,16 @@ class JointLine:
     note: str
 
 
-class CorrectPage(Themed):
+class CorrectPage(QWidget):
     """Each correction is emitted at once; the page is then shown what came of it.
 
-    Signals
-    -------
-    condition_typed, kept_turned, sign_turned
-        A walk's key and its condition or whether it counts; a joint and whether its sign is turned.
-    sides_swapped
-        Left and right were worn the other way round.
-    closed
-        Back to the results.
+    `condition_typed`, `kept_turned`, `sign_turned`: a walk's key and its condition or whether it counts; a joint and
+    whether its sign is turned.
     """
 
     condition_typed = Signal(str, str)
     kept_turned = Signal(str, bool)
     sign_turned = Signal(str, bool)
-    sides_swapped = Signal()
-    closed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -74,9 +68,6 @@ class CorrectPage(Themed):
         self.swap = Button(tr("Swap left and right"), ButtonKind.SECONDARY, Icon.REPEAT)
         self.swap_note = Text(size=14, tone="ink2", wraps=True)
         self._build()
-        self.back.clicked.connect(self.closed)
-        self.swap.clicked.connect(self.sides_swapped)
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -92,8 +83,8 @@ class CorrectPage(Themed):
         for line in lines:
             if line.key not in self.walk_rows:
                 row = self.walk_rows[line.key] = _WalkRow(line)
-                row.condition.committed.connect(self._on_condition_committed)
-                row.kept.toggled.connect(self._on_kept_toggled)
+                row.condition.committed.connect(partial(self._on_condition_committed, line.key))
+                row.kept.toggled.connect(partial(self.kept_turned.emit, line.key))
                 self.walks.column.insertWidget(self.walks.column.count() - 1, row)
             self.walk_rows[line.key].show_line(line)
 
@@ -101,7 +92,7 @@ class CorrectPage(Themed):
         for line in lines:
             if line.joint not in self.joint_rows:
                 row = self.joint_rows[line.joint] = _JointRow(line.joint)
-                row.turned.toggled.connect(self._on_sign_toggled)
+                row.turned.toggled.connect(partial(self.sign_turned.emit, str(line.joint)))
                 self.joints.column.insertWidget(self.joints.column.count() - 1, row)
             self.joint_rows[line.joint].show_line(line)
         known = {line.joint for line in lines}
@@ -116,8 +107,7 @@ class CorrectPage(Themed):
 
     def set_room(self, width: float, _height: float) -> None:
         is_narrow = width < 940
-        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
-        self._columns.setDirection(way)
+        self._columns.setDirection(DOWN if is_narrow else ACROSS)
         for row in self.walk_rows.values():
             row.set_narrow(is_narrow and width < 700)
 
@@ -127,47 +117,16 @@ class CorrectPage(Themed):
     def _build(self) -> None:
         for card in (self.walks, self.joints):
             card.column.addStretch(1)
-        self.sides.column.addWidget(self.swap, 0, Qt.AlignmentFlag.AlignLeft)
-        self.sides.column.addWidget(self.swap_note)
-        head = QHBoxLayout()
+        lay_out(self.sides.column, (self.swap, 0, Qt.AlignmentFlag.AlignLeft), self.swap_note)
+        head = lay_out(QHBoxLayout(), self.back, (self.note, 1))
         head.setSpacing(16)
-        head.addWidget(self.back)
-        head.addWidget(self.note, 1)
-        right = QVBoxLayout()
+        right = lay_out(QVBoxLayout(), self.joints, self.sides, 1)
         right.setSpacing(12)
-        right.addWidget(self.joints)
-        right.addWidget(self.sides)
-        right.addStretch(1)
-        self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._columns.addWidget(self.walks, 3)
-        self._columns.addLayout(right, 2)
-        self._page = QVBoxLayout(self)
-        self._page.addLayout(head)
-        self._page.addLayout(self._columns, 1)
+        self._columns = lay_out(QBoxLayout(ACROSS), (self.walks, 3), (right, 2), spacing=12)
+        lay_out(QVBoxLayout(self), head, (self._columns, 1), margins=(16, 16, 16, 12), spacing=12)
 
-    def _on_condition_committed(self) -> None:
-        field = self.sender()
-        for key, row in self.walk_rows.items():
-            if row.condition is field:
-                self.condition_typed.emit(key, row.condition.text.strip())
-
-    def _on_kept_toggled(self, is_kept: bool) -> None:
-        toggle = self.sender()
-        for key, row in self.walk_rows.items():
-            if row.kept is toggle:
-                self.kept_turned.emit(key, is_kept)
-
-    def _on_sign_toggled(self, is_turned: bool) -> None:
-        toggle = self.sender()
-        for joint, row in self.joint_rows.items():
-            if row.turned is toggle:
-                self.sign_turned.emit(str(joint), is_turned)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._page.setContentsMargins(px(16), px(16), px(16), px(12))
-        self._page.setSpacing(px(12))
-        self._columns.setSpacing(px(12))
+    def _on_condition_committed(self, key: str) -> None:
+        self.condition_typed.emit(key, self.walk_rows[key].condition.text.strip())
 
 
 class _WalkRow(QWidget):
@@ -178,16 +137,10 @@ class _WalkRow(QWidget):
         self._note = Text(size=12, tone="ink2", wraps=True)
         self.condition = Field("", has_label=False, placeholder=tr("condition"))
         self.kept = Toggle(tr("Included"), "", is_on=line.is_kept)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(self._name)
-        words.addWidget(self._note)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.setContentsMargins(0, 0, 0, 0)
+        words = lay_out(QVBoxLayout(), self._name, self._note, spacing=0)
+        kept = self.kept, 0, Qt.AlignmentFlag.AlignLeft
+        self._row = lay_out(QBoxLayout(ACROSS, self), (words, 2), (self.condition, 3), kept, margins=0)
         self._row.setSpacing(12)
-        self._row.addLayout(words, 2)
-        self._row.addWidget(self.condition, 3)
-        self._row.addWidget(self.kept, 0, Qt.AlignmentFlag.AlignLeft)
 
     def show_line(self, line: WalkLine) -> None:
         if line.condition != self._line.condition or not self.condition.text:
@@ -200,8 +153,7 @@ class _WalkRow(QWidget):
         self.kept.show_on(line.is_kept)
 
     def set_narrow(self, is_narrow: bool) -> None:
-        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
-        self._row.setDirection(way)
+        self._row.setDirection(DOWN if is_narrow else ACROSS)
 
 
 class _JointRow(QWidget):
@@ -211,16 +163,11 @@ class _JointRow(QWidget):
         name = capitalised(name_of(joint))
         self.turned.setAccessibleName(tr("{joint}: reverse the sign of this joint").format(joint=name))
         self._note = Text(size=12, tone="ink2", wraps=True)
-        head = QHBoxLayout()
+        kind = Text(tr("Knee") if joint.is_knee else tr("Ankle"), size=15, weight=SEMIBOLD)
+        head = lay_out(QHBoxLayout(), Chip(joint.side), kind, (self._note, 1))
         head.setSpacing(8)
-        head.addWidget(Chip(joint.side))
-        head.addWidget(Text(tr("Knee") if joint.is_knee else tr("Ankle"), size=15, weight=SEMIBOLD))
-        head.addWidget(self._note, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
+        column = lay_out(QVBoxLayout(self), head, (self.turned, 0, Qt.AlignmentFlag.AlignLeft), margins=0)
         column.setSpacing(4)
-        column.addLayout(head)
-        column.addWidget(self.turned, 0, Qt.AlignmentFlag.AlignLeft)
 
     def show_line(self, line: JointLine) -> None:
         self._note.setText(line.note)

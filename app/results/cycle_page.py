@@ -22,6 +22,7 @@ from app.summary.walk_figures import (
 )
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK, figure_columns, figure_rows
+from app.widgets.lay_out import lay_out
 from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.body import name_of, side_name
@@ -55,10 +56,7 @@ class CyclePage(QWidget):
         self.band_words = ""
         self.charts = CycleCharts(reference_curves())
         self.by_hand = Text(size=12, weight=MEDIUM, wraps=True)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.charts, 1)
-        column.addWidget(self.by_hand)
+        lay_out(QVBoxLayout(self), (self.charts, 1), self.by_hand, margins=0)
         self.peaks = FiguresCard(tr("Peaks and ranges"), tr("mean ± SD (°)"))
         self.time_distance = FiguresCard(tr("Time and distance"), tr("mean ± SD"))
         self.hips = FiguresCard(tr("Hip and pelvis"), tr("mean ± SD (°)"))
@@ -74,15 +72,7 @@ class CyclePage(QWidget):
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
     def show_walk(self, part: Part, walk: RecordingAnalysis, is_simulated: bool, who: AgeAndHeight) -> None:
-        """Show the strides of a condition, each side on its own stride; nothing where it has none.
-
-        Parameters
-        ----------
-        walk
-            One of its walks, whose single strides can be looked at.
-        who
-            Choose the band, with the speed of the walks.
-        """
+        """Show a condition's strides, each side on its own stride; `walk`: single ones, `who`: for the band."""
         bands, sides_of_band = bands_of(part, who), sides_with_band(part)
         curves, values = (bands.curves, bands.values) if sides_of_band else (None, None)
         joints = [joint for side in part.sides for joint in part.joints if joint.side is side]
@@ -164,16 +154,11 @@ class FiguresCard(Card):
 
     def __init__(self, title: str, what: str) -> None:
         super().__init__(padding=12)
-        head = QHBoxLayout()
+        head = lay_out(QHBoxLayout(), Text(title, size=16, weight=SEMIBOLD), Text(what, size=12, tone="ink2"), 1)
         head.setSpacing(8)
-        head.addWidget(Text(title, size=16, weight=SEMIBOLD))
-        head.addWidget(Text(what, size=12, tone="ink2"))
-        head.addStretch(1)
         self.table = CellTable(title)
         self.note = Text(size=12, tone="ink2", wraps=True)
-        self.column.addLayout(head)
-        self.column.addWidget(self.table)
-        self.column.addWidget(self.note)
+        lay_out(self.column, head, self.table, self.note)
 
     def show_figures(self, rows: Sequence[str | Figure], strides: Mapping[Side, int], note: str) -> None:
         self.table.show_rows(figure_columns(strides), figure_rows(rows))

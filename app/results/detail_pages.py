@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QStackedWidget
 
+from app.results.agreement_page import AgreementPage
+from app.wording.translation import tr
 from app.workers.background import Background
 
 if TYPE_CHECKING:  # their imports take a second
     from app.results.agreement_controller import AgreementController
-    from app.results.agreement_page import AgreementPage
     from app.results.diagnostics_controller import DiagnosticsController
     from app.results.found_page import FoundPage
     from core.results import Analysis, RecordingAnalysis
@@ -27,19 +28,12 @@ HOW_FOUND, AGREEMENT = "how-found", "agreement"  # what is exported, as the libr
 class DetailPages(QObject):
     """Two pages in the stack of whoever shows the results.
 
-    Signals
-    -------
-    refused
-        What could not be shown, and what follows.
-    closed
-        Somebody is done with the page in sight.
-    writing
-        Which figures are to be saved, the folder that was chosen, and the call that writes them into it. Whoever
-        shows the page knows on which thread, and calls `show_saved` when it is done.
+    `writing`: which figures are to be saved, the folder that was chosen, and the call that writes them into it. Whoever
+    shows the page knows on which thread, and calls `show_saved` when it is done.
     """
 
-    refused = Signal(str, str)
-    closed = Signal()
+    refused = Signal(str, str)  # what could not be shown, and what follows
+    closed = Signal()  # somebody is done with the page in sight
     writing = Signal(str, object, object)
 
     def __init__(
@@ -68,30 +62,28 @@ class DetailPages(QObject):
     def show_found(self, session: "Session", analysis: "Analysis", recording: "RecordingAnalysis") -> None:
         """Show how the joints of a recording were found."""
         if self.found is None or self._how_found is None:
-            from app.results.diagnostics_controller import DiagnosticsController
-            from app.results.found_page import FoundPage
+            from app.results import diagnostics_controller, found_page  # curves, and what computes them
 
-            self.found = FoundPage()
+            self.found = found_page.FoundPage()
             self.found.set_room(*self._room)
             self._stack.addWidget(self.found)
-            self._how_found = DiagnosticsController(self.found, self._looking, self)
+            self._how_found = diagnostics_controller.DiagnosticsController(self.found, self._looking, self)
             self._how_found.refused.connect(self.refused)
             self._how_found.writing.connect(partial(self._on_writing, HOW_FOUND))
-            self.found.closed.connect(self.closed)
+            self.found.back.clicked.connect(self.closed)
         self._how_found.show(session, analysis, recording)
         self._stack.setCurrentWidget(self.found)
 
     def show_agreement(self, session: "Session", analysis: "Analysis") -> None:
         """Put a session beside an optical system."""
         if self.agreement is None or self._compared is None:
-            from app.results.agreement_controller import AgreementController
-            from app.results.agreement_page import AgreementPage
+            from app.results.agreement_controller import AgreementController  # SciPy, Typst
 
             self.agreement = AgreementPage()
             self._stack.addWidget(self.agreement)
             self._compared = AgreementController(self.agreement, self._comparing, self)
             self._compared.writing.connect(partial(self._on_writing, AGREEMENT))
-            self.agreement.closed.connect(self.closed)
+            self.agreement.back.clicked.connect(self.closed)
         self._compared.show(session, analysis)
         self._stack.setCurrentWidget(self.agreement)
 
@@ -121,3 +113,10 @@ class DetailPages(QObject):
     def _on_writing(self, what: str, folder: Path, write: Callable[[], None]) -> None:
         self._saved_for = self.found if what == HOW_FOUND else self.agreement
         self.writing.emit(what, folder, write)
+
+
+def cannot_write(folder: Path) -> tuple[str, str]:
+    """The message about a folder that takes no files."""
+    return tr("{folder} is not writable").format(folder=folder.name), tr(
+        "Choose another folder; the recordings are unchanged"
+    )

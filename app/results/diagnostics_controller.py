@@ -1,31 +1,27 @@
 """Controller of "How was this found". One joint at a time, computed beside the screen, shown, and saved as files."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
-from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.exports.proposed_names import free_name, session_name
 from app.results.found_page import FoundPage
-from app.storage.audit import about
-from app.storage.stored import Action, LibraryError
 from app.summary.diagnostics import write_diagnostics
-from app.system.progress import Report
 from app.widgets.folder_dialog import ask_for_new_folder
 from app.wording.recordings import ShownName, shown_names, with_shown_names
 from app.wording.translation import tr
-from app.workers.background import Background, Work
+from app.workers.background import Background
 from core.body import Joint
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of
 
 if TYPE_CHECKING:
-    from app.storage.opened import OpenedLibrary
     from core.findings import Finding
     from core.session import Session
 
@@ -37,16 +33,11 @@ WHAT = "how-found"  # in the name of the folder that is proposed
 class DiagnosticsController(QObject):
     """Works for one page; a newer question takes the older one's place.
 
-    Signals
-    -------
-    refused
-        What could not be shown, and what follows.
-    writing
-        The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be notified of an export.
+    `writing`: the folder that was chosen, and the call that writes the files into it: whoever shows the page knows on
+    which thread, and who must be notified of an export.
     """
 
-    refused = Signal(str, str)
+    refused = Signal(str, str)  # what could not be shown, and what follows
     writing = Signal(object, object)
 
     def __init__(self, page: FoundPage, background: Background, parent: QObject) -> None:
@@ -61,8 +52,8 @@ class DiagnosticsController(QObject):
         self._dialog: QFileDialog | None = None
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        page.joint_chosen.connect(self._on_joint_chosen)
-        page.save_requested.connect(self._on_save_requested)
+        page.joints.chosen.connect(self._on_joint_chosen)
+        page.save.clicked.connect(self._on_save_requested)
 
     def show(self, session: "Session", analysis: Analysis, recording: RecordingAnalysis) -> None:
         """Answer for a recording of a session: for the joint that was looked at last, else the first it holds."""
@@ -86,7 +77,8 @@ class DiagnosticsController(QObject):
             self._page.show_nothing(self._joint)
             return
         self._page.show_working(self._joint)
-        self._background.start(_finding(self._session, calibration, self._recording.name))
+        session, name = self._session, self._recording.name
+        self._background.start(lambda _report: diagnostics_of(session, calibration, name))
 
     def _noticed(self) -> "list[Finding]":
         """What the analysis noticed about the joint and its two sensors: everywhere, or in this recording."""
@@ -139,43 +131,4 @@ class DiagnosticsController(QObject):
     def _on_folder_selected(self, folder: str) -> None:
         if self._found is not None and self._session is not None:
             out = Path(folder)
-            self.writing.emit(out, _writing(self._found, self._session.is_simulated, out))
-
-
-def saved_from_library(
-    opened: "OpenedLibrary", session_id: UUID, what: str, folder: Path, write: Callable[[], None]
-) -> Path:
-    """Note an export of figures of a session and make it, on the library's thread; `what` is one of the WHATs.
-
-    Raises
-    ------
-    LibraryError
-        It cannot be noted, or the folder cannot be written.
-    """
-    opened.library.audit.note(Action.EXPORT, about("session", session_id), format=what)
-    try:
-        write()
-    except OSError as problem:
-        raise LibraryError(*cannot_write(folder)) from problem
-    return folder
-
-
-def cannot_write(folder: Path) -> tuple[str, str]:
-    """The message about a folder that takes no files."""
-    return tr("{folder} is not writable").format(folder=folder.name), tr(
-        "Choose another folder; the recordings are unchanged"
-    )
-
-
-def _finding(session: "Session", calibration: JointCalibration, recording: str) -> Work:
-    def work(_report: Report) -> object:
-        return diagnostics_of(session, calibration, recording)
-
-    return work
-
-
-def _writing(found: JointDiagnostics, is_simulated: bool, folder: Path) -> Callable[[], None]:
-    def write() -> None:
-        write_diagnostics(found, is_simulated, folder)
-
-    return write
+            self.writing.emit(out, partial(write_diagnostics, self._found, self._session.is_simulated, out))

@@ -1,6 +1,5 @@
 """In what the legs differ most: both values, their difference, its likely interval beside healthy people's, a mark."""
 
-import math
 from collections.abc import Sequence
 
 from app.charts.cycles import is_mean_enough
@@ -8,8 +7,8 @@ from app.summary.facts import Facts
 from app.summary.goals import goal_mark
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import NOTHING, fixed, judged_in_words, signed
-from app.summary.what_differs import LegsRow, what_differs, without_family
-from app.theme.current import current_theme
+from app.summary.what_differs import LegsRow, half_of_strip, what_differs, without_family
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK
@@ -23,9 +22,7 @@ from core.parameters import Unit, unit_of
 from core.verdicts.measurement_error import Difference, Judgement, Mark
 from core.verdicts.model import Verdict
 
-ZONES = 2.3  # half a strip is so many times what healthy people differ by,
-HALVES = 1.6  # or where that is not known half of the likely interval;
-REACH = 1.04  # at least so many times what the interval reaches
+REACH = 1.04  # half a strip is at least so many times what the interval reaches
 HEAD, ROW = 34, 28
 EDGES = 4  # px: the card's padding above and below
 SIDE, COMPACT_SIDE = 16, 12
@@ -36,8 +33,8 @@ class DiffersCard(Card):
     """As many rows as there is room for, but at least three; those beyond healthy people's difference first."""
 
     def __init__(self) -> None:
-        self._side = SIDE
-        super().__init__(padding=SIDE)
+        super().__init__()
+        self._space(SIDE)
         self._columns: Sequence[TableColumn] = ()
         self.rows: Sequence[TableRow] = ()
         self._most = LEAST
@@ -56,8 +53,7 @@ class DiffersCard(Card):
 
     def set_room(self, height: float, *, is_compact: bool) -> None:
         """Show what fits into so many px of the design; nearer to the edge where the page is narrow."""
-        self._side = COMPACT_SIDE if is_compact else SIDE
-        self._apply_theme()
+        self._space(COMPACT_SIDE if is_compact else SIDE)
         most = min(max(int((height - HEAD - EDGES) // ROW), LEAST), MOST)
         if most != self._most:
             self._most = most
@@ -67,9 +63,8 @@ class DiffersCard(Card):
         if self._columns:
             self.table.show_rows(self._columns, self.rows[: self._most])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.column.setContentsMargins(px(self._side), px(EDGES / 3), px(self._side), px(EDGES * 2 / 3))
+    def _space(self, side: float) -> None:
+        scaled(self.column.setContentsMargins, side, EDGES / 3, side, EDGES * 2 / 3)
 
 
 def _columns(facts: Facts) -> list[TableColumn]:
@@ -129,8 +124,7 @@ def _strip(found: Difference) -> TableCell:
     if not found.is_judged:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
-    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
-    scale = max(usual, REACH * (abs(found.difference) + found.error))
+    scale = half_of_strip(found, REACH)
     return IntervalStrip(found.difference, found.error, found.healthy, scale, spoken=judged_in_words(found))
 
 

@@ -7,10 +7,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QBoxLayout,
-    QFrame,
     QGridLayout,
     QHBoxLayout,
     QStackedWidget,
@@ -23,19 +22,19 @@ from app.plots.cost_map import CostMap
 from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
 from app.summary.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.theme.icons import SEVERITY_ICONS, Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.findings_list import ORDER, FindingRow
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.line_keys import LineKeys
 from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sentence_page import SentencePage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.body import name_of, segment_name
 from app.wording.findings import sentence
 from app.wording.translation import capitalised, figure_text, joined, tr
@@ -44,6 +43,7 @@ from core.findings import Finding
 from core.results import Method
 from core.verdicts.diagnostics import JointDiagnostics
 
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 SIDE_BY_SIDE_FROM = 940  # what the first two pictures need beside each other
 MAPS_FROM = 500  # what both maps need beside each other
 WHOLE, TEN_SECONDS = "whole", "ten-seconds"
@@ -51,22 +51,8 @@ CLOSE_S = 10.0
 MIN_APART = 0.2  # of how alike the curves are; less apart, this second distinguishes no pairing
 
 
-class FoundPage(Themed):
-    """One joint at a time; it is computed elsewhere.
-
-    Signals
-    -------
-    closed
-        Back to the results.
-    joint_chosen
-        Another joint is asked for.
-    save_requested
-        The numbers behind the pictures, as files.
-    """
-
-    closed = Signal()
-    joint_chosen = Signal(str)
-    save_requested = Signal()
+class FoundPage(QWidget):
+    """One joint at a time; it is computed elsewhere."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -82,13 +68,8 @@ class FoundPage(Themed):
         self.angle = _AngleCard()
         self.figures = _FiguresCard()
         self.noticed = Card()
-        self.cards = ReadingArea()
         self._stack = QStackedWidget()
         self._build()
-        self.back.clicked.connect(self.closed)
-        self.joints.chosen.connect(self.joint_chosen)
-        self.save.clicked.connect(self.save_requested)
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -142,9 +123,8 @@ class FoundPage(Themed):
     def set_room(self, width: float, _height: float) -> None:
         self._width = width
         self._place_head()
-        ways = QBoxLayout.Direction
         is_wide = width >= SIDE_BY_SIDE_FROM
-        self._pictures.setDirection(ways.LeftToRight if is_wide else ways.TopToBottom)
+        self._pictures.setDirection(ACROSS if is_wide else DOWN)
         self.axis.set_side_by_side(width / (2 if is_wide else 1) >= MAPS_FROM)
         self.figures.set_columns(2 if is_wide else 1)
 
@@ -154,31 +134,20 @@ class FoundPage(Themed):
     def _build(self) -> None:
         self._head = QGridLayout()
         self._head.setColumnStretch(1, 1)
-        self._pictures = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        for card in (self.axis, self.pairing):
-            self._pictures.addWidget(card, 1)
+        scaled(self._head.setSpacing, 12)
+        self._pictures = lay_out(QBoxLayout(ACROSS), (self.axis, 1), (self.pairing, 1), spacing=12)
         column = QWidget()
-        self._cards = QVBoxLayout(column)
-        self._cards.addLayout(self._pictures)
-        for widget in (self.angle, self.figures, self.noticed):
-            self._cards.addWidget(widget)
-        self._cards.addStretch(1)
-        self.cards.setWidget(column)
-        self.cards.setWidgetResizable(True)
-        self.cards.setFrameShape(QFrame.Shape.NoFrame)
+        cards = (self._pictures, self.angle, self.figures, self.noticed, 1)
+        lay_out(QVBoxLayout(column), *cards, margins=(0, 0, 4, 0), spacing=12)
+        self.cards = ReadingArea(column, tr("Calibration of this joint"))
         self.cards.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.cards.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
-        self.cards.setAccessibleName(tr("Calibration of this joint"))
         for page in (self.waiting, self.cards):
             self._stack.addWidget(page)
-        self._page = QVBoxLayout(self)
-        self._page.addLayout(self._head)
-        self._page.addWidget(self.note)
-        self._page.addWidget(self._stack, 1)
+        lay_out(QVBoxLayout(self), self._head, self.note, (self._stack, 1), margins=(16, 16, 16, 12), spacing=12)
+        on_theme(self._place_head)
 
     def _place_head(self) -> None:
         """Put the joints between both buttons, or under them where that is too wide."""
-        px = current_theme().px
         for widget in (self.back, self.joints, self.save):
             self._head.removeWidget(widget)
         needed = sum(widget.sizeHint().width() for widget in (self.back, self.joints, self.save))
@@ -200,15 +169,6 @@ class FoundPage(Themed):
             column.addWidget(FindingRow(icon, finding.severity, sentence(finding)))
         self.noticed.setVisible(bool(findings))
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._page.setContentsMargins(px(16), px(16), px(16), px(12))
-        self._page.setSpacing(px(12))
-        for layout in (self._head, self._pictures, self._cards):
-            layout.setSpacing(px(12))
-        self._cards.setContentsMargins(0, 0, px(4), 0)
-        self._place_head()
-
 
 _IN_ORDER = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE)
 
@@ -218,18 +178,14 @@ class _Head(QHBoxLayout):
 
     def __init__(self, title: str, figure: str) -> None:
         super().__init__()
-        self._chips = {side: Chip(side) for side in Side}
+        self._chip = Chip(Side.LEFT)  # until a joint is shown
         self._simulated = Text(tr(SIMULATED), size=12, weight=SEMIBOLD)
         self.setSpacing(8)
-        for chip in self._chips.values():
-            self.addWidget(chip)
-        self.addWidget(Text(title, size=16, weight=SEMIBOLD, wraps=True), 1)
-        self.addWidget(Text(figure, size=12, tone="ink2"))
-        self.addWidget(self._simulated)
+        words = Text(title, size=16, weight=SEMIBOLD, wraps=True)
+        lay_out(self, self._chip, (words, 1), Text(figure, size=12, tone="ink2"), self._simulated)
 
     def show_joint(self, side: Side, is_simulated: bool) -> None:
-        for one, chip in self._chips.items():
-            chip.setVisible(one is side)
+        self._chip.set_side(side)
         self._simulated.setVisible(is_simulated)
 
 
@@ -251,22 +207,13 @@ class _AxisCard(Card):
             "Cross: axis in use. Circle: its uncertainty, 2 SD. Ring: best fit in this map. Scale: misfit "
             "of equation 3, root mean square."
         )
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        for name, chart in zip(self._names, self.maps, strict=True):
-            column = QVBoxLayout()
-            column.addWidget(name)
-            column.addWidget(chart)
-            self._row.addLayout(column, 1)
-        self.column.addLayout(self.head)
-        self.column.addWidget(Text(words, tone="ink2", wraps=True))
-        self.column.addLayout(self._row)
-        self.column.addWidget(Text(marks, size=12, tone="ink2", wraps=True))
-        self.column.addWidget(self._verdict)
-        self.column.addStretch(1)
+        maps = [lay_out(QVBoxLayout(), *one) for one in zip(self._names, self.maps, strict=True)]
+        self._row = lay_out(QBoxLayout(ACROSS), *((one, 1) for one in maps))
+        why, key = Text(words, tone="ink2", wraps=True), Text(marks, size=12, tone="ink2", wraps=True)
+        lay_out(self.column, self.head, why, self._row, key, self._verdict, 1)
 
     def set_side_by_side(self, is_side_by_side: bool) -> None:
-        ways = QBoxLayout.Direction
-        self._row.setDirection(ways.LeftToRight if is_side_by_side else ways.TopToBottom)
+        self._row.setDirection(ACROSS if is_side_by_side else DOWN)
 
     def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
         calibration = found.calibration
@@ -306,12 +253,8 @@ class _PairingCard(Card):
             "curve is rotated to fit the other. If both axes point the same way, the curves overlap. If "
             "not, they are mirror images."
         )
-        self.column.addLayout(self.head)
-        self.column.addWidget(Text(words, tone="ink2", wraps=True))
-        self.column.addWidget(self._keys)
-        self.column.addWidget(self.plot)
-        self.column.addWidget(self._verdict)
-        self.column.addStretch(1)
+        why = Text(words, tone="ink2", wraps=True)
+        lay_out(self.column, self.head, why, self._keys, self.plot, self._verdict, 1)
 
     def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
         near, far = (segment_name(site.segment) for site in (found.joint.proximal, found.joint.distal))
@@ -369,13 +312,8 @@ class _AngleCard(Card):
             "alone (equation 14), it does not drift but scatters. Combined (equation 15), it does "
             "neither. The combined angle is the published one, shown with the result under Whole walk."
         )
-        self.column.addLayout(self.head)
-        self.column.addWidget(Text(words, tone="ink2", wraps=True))
-        self.column.addWidget(self.stretch, 0, Qt.AlignmentFlag.AlignLeft)
-        self.column.addWidget(self._keys)
-        self.column.addWidget(self.chart, 1)
-        self.column.addWidget(self._cut)
-        self.column.addWidget(self._verdict)
+        why, stretch = Text(words, tone="ink2", wraps=True), (self.stretch, 0, Qt.AlignmentFlag.AlignLeft)
+        lay_out(self.column, self.head, why, stretch, self._keys, (self.chart, 1), self._cut, self._verdict)
         self.stretch.chosen.connect(self._on_stretch_chosen)
 
     def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
@@ -419,12 +357,13 @@ class _FiguresCard(Card):
     """All figures of the joint as a list of names and values."""
 
     def __init__(self) -> None:
-        self._grid = QGridLayout()
         super().__init__()
+        self._grid = QGridLayout()
+        scaled(self._grid.setHorizontalSpacing, 12)
+        scaled(self._grid.setVerticalSpacing, 4)
         self._figures: Sequence[FoundFigure] = ()
         self._columns = 2
-        self.column.addWidget(Text(tr("In numbers"), size=16, weight=SEMIBOLD))
-        self.column.addLayout(self._grid)
+        lay_out(self.column, Text(tr("In numbers"), size=16, weight=SEMIBOLD), self._grid)
         self._texts: list[Text] = []
 
     def show_figures(self, figures: Sequence[FoundFigure]) -> None:
@@ -455,11 +394,6 @@ class _FiguresCard(Card):
             is_name = column % 3 == 0 and column < 3 * self._columns
             self._grid.setColumnStretch(column, 1 if is_name else 0)
             self._grid.setColumnMinimumWidth(column, px(24) if column == 2 < 3 * self._columns - 1 else 0)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._grid.setHorizontalSpacing(px(12))
-        self._grid.setVerticalSpacing(px(4))
 
 
 def _empty(card: Card) -> None:

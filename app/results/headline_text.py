@@ -3,18 +3,18 @@
 from collections.abc import Sequence
 
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QFontMetrics, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 
 SIZES = (22, 21, 20)
 SECOND = 14
 SPARE = 24  # px: words are wrapped a little before they touch the edge
 
 
-class HeadlineText(Themed):
+class HeadlineText(QWidget):
     """Whoever cannot see it is notified whenever the first sentence changes; the tooltip has all sentences."""
 
     accessible_role = QAccessible.Role.Note
@@ -25,11 +25,8 @@ class HeadlineText(Themed):
         self.first = Text(size=SIZES[0], weight=SEMIBOLD, wraps=True)
         self.second = Text(size=SECOND, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        for text in (self.first, self.second):
-            self._column.addWidget(text)
-        self._apply_theme()
+        lay_out(QVBoxLayout(self), self.first, self.second, margins=0, spacing=4)
+        on_theme(self._fit)
 
     @property
     def text(self) -> str:
@@ -68,7 +65,3 @@ class HeadlineText(Themed):
         while count > 1 and metrics.horizontalAdvance(" ".join(self._beside[:count])) > width:
             count -= 1
         self.second.setText(" ".join(self._beside[:count]))
-
-    def _apply_theme(self) -> None:
-        self._column.setSpacing(px(4))
-        self._fit()

@@ -6,11 +6,11 @@ from types import MappingProxyType
 
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.results.compared_card import scrolling
 from app.summary.data_quality import DataQuality, QualityLine
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
 from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
 from app.widgets.body_shapes import body_shapes
@@ -19,9 +19,10 @@ from app.widgets.card import Card
 from app.widgets.facts_table import fact_columns, fact_rows, hip_columns, hip_rows
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.body import name_of
 from app.wording.translation import tr
@@ -39,7 +40,7 @@ MARK = (56, 32)
 HIP_BELOW = 14  # units of the drawing, from the upper edge of the thigh
 
 
-class QualityPage(Themed):
+class QualityPage(QWidget):
     """Signals: `repeat_requested` of a leg's free motion."""
 
     repeat_requested = Signal(object)  # Side
@@ -62,7 +63,6 @@ class QualityPage(Themed):
         self.strides = Text(size=12, tone="ink2", wraps=True)
         self._build()
         self.engineering.toggled.connect(self._show_parts)
-        self._apply_theme()
         self._show_parts()
 
     @property
@@ -89,17 +89,7 @@ class QualityPage(Themed):
         *,
         can_repeat: bool = False,
     ) -> None:
-        """Say it of one walk.
-
-        Parameters
-        ----------
-        joints
-            Of each joint that was measured the verdict of its shape.
-        strides
-            How many were used and left out, in words.
-        can_repeat
-            Whether sensors are worn, so that a free motion can be repeated now.
-        """
+        """Show one walk's quality; `joints`: verdicts of shape, `strides`: used and left out, in words."""
         self.first.setText(found.first)
         self.then.setText(found.then)
         self.then.setVisible(bool(found.then))
@@ -124,7 +114,6 @@ class QualityPage(Themed):
 
     def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
         """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
-        px = current_theme().px
         self._figure_card.setVisible(not is_compact)
         beside = 0 if is_compact else px(FIGURE_WIDTH) + self._columns.spacing()
         doors = (self.engineering, self.how_found, self.agreement)
@@ -132,55 +121,29 @@ class QualityPage(Themed):
         self._place_doors(1 if is_narrow else 3 if needed + beside <= width else 2)
 
     def _build(self) -> None:
-        self._list = QVBoxLayout()
-        self._list.addStretch(1)
-        self._cards = QWidget()
-        self._cards.setLayout(self._list)
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setWidget(self._cards)
-        for part in (self._cards, self._scroll.viewport()):
-            part.setAutoFillBackground(False)
-        self._order_card = Card()
-        order = QHBoxLayout()
+        cards = QWidget()
+        self._list = lay_out(QVBoxLayout(cards), 1, margins=0, spacing=12)
+        self._scroll = scrolled(cards)
+        self._order_card, self._figures_card, self._figure_card = Card(), Card(padding=12), Card()
+        order = lay_out(QHBoxLayout(), (IconMark(Icon.READ), 0, Qt.AlignmentFlag.AlignTop), (self.in_order, 1))
         order.setSpacing(12)
-        order.addWidget(IconMark(Icon.READ), 0, Qt.AlignmentFlag.AlignTop)
-        order.addWidget(self.in_order, 1)
         self._order_card.column.addLayout(order)
-        self._figures_card = Card(padding=12)
-        tables = QWidget()
-        found = QVBoxLayout(tables)
-        found.setContentsMargins(0, 0, 0, 0)
-        for table in (self.facts, self.hip_facts):
-            found.addWidget(table)
-        found.addStretch(1)
-        self._figures_card.column.addWidget(scrolling(tables), 2)
-        self._figures_card.column.addWidget(Text(tr("All findings"), size=16, weight=SEMIBOLD))
-        self._figures_card.column.addWidget(self.findings, 1)
+        tables, title = QWidget(), Text(tr("All findings"), size=16, weight=SEMIBOLD)
+        lay_out(QVBoxLayout(tables), self.facts, self.hip_facts, 1, margins=0)
+        area = scrolled(tables, is_upright=False)
+        lay_out(self._figures_card.column, (area, 2), title, (self.findings, 1))
         self._doors = QGridLayout()
+        scaled(self._doors.setSpacing, 12)
         self._place_doors(3)
-        self._left = QVBoxLayout()
-        self._left.addWidget(self._scroll, 1)
-        self._left.addWidget(self._figures_card, 1)
-        self._left.addWidget(self._order_card)
-        self._left.addLayout(self._doors)
-        self._figure_card = Card()
-        self._figure_card.column.addWidget(Text(tr("Joints and sensors"), size=16, weight=SEMIBOLD))
-        self._figure_card.column.addWidget(self.figure, 1)
-        self._figure_card.column.addWidget(self.strides)
-        self._columns = QHBoxLayout()
-        self._columns.addLayout(self._left, 1)
-        self._columns.addWidget(self._figure_card)
-        self._words = QVBoxLayout()
-        self._words.addWidget(self.first)
-        self._words.addWidget(self.then)
-        self._page = QVBoxLayout(self)
-        self._page.setContentsMargins(0, 0, 0, 0)
-        self._page.addLayout(self._words)
-        self._page.addLayout(self._columns, 1)
+        parts = ((self._scroll, 1), (self._figures_card, 1), self._order_card, self._doors)
+        left = lay_out(QVBoxLayout(), *parts, spacing=12)
+        title = Text(tr("Joints and sensors"), size=16, weight=SEMIBOLD)
+        lay_out(self._figure_card.column, title, (self.figure, 1), self.strides)
+        scaled(self._figure_card.setFixedWidth, FIGURE_WIDTH)
+        self._columns = lay_out(QHBoxLayout(), (left, 1), self._figure_card, spacing=16)
+        words = lay_out(QVBoxLayout(), self.first, self.then, spacing=4)
+        lay_out(QVBoxLayout(self), words, (self._columns, 1), margins=0, spacing=12)
+        on_theme(self._keep_beside)
 
     def _place_doors(self, in_row: int) -> None:
         """Put so many beside each other; of two rows the first has one door, as wide as both below it."""
@@ -209,65 +172,39 @@ class QualityPage(Themed):
         self._scroll.setVisible(is_folded)
         self._figures_card.setVisible(not is_folded)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._page.setSpacing(px(12))
-        self._words.setSpacing(px(4))
-        self._columns.setSpacing(px(16))
-        self._left.setSpacing(px(12))
-        self._doors.setSpacing(px(12))
-        self._list.setSpacing(px(12))
-        self._list.setContentsMargins(0, 0, 0, 0)
-        self._figure_card.setFixedWidth(px(FIGURE_WIDTH))
-        self.figure.keep_beside(px(BESIDE))
+    def _keep_beside(self) -> None:
+        self.figure.keep_beside(current_theme().px(BESIDE))
 
 
-class LineCard(Themed):
+class LineCard(QWidget):
     """One thing that speaks against a figure: yellow where it keeps one from being reported."""
 
     def __init__(self, line: QualityLine, *, can_repeat: bool) -> None:
         super().__init__()
-        self._line = line
+        self.side = line.side  # the leg whose free motion mends it
         is_grave = line.is_grave
         tone, quiet = ("caution_ink", "caution_ink") if is_grave else ("ink", "ink2")
         title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_alone(line.verdict)
         self.setAccessibleName(" ".join(filter(None, [f"{title}.", line.why, line.to_do])))
         self.repeat: Button | None = None
+        top = Qt.AlignmentFlag.AlignTop
         words = QVBoxLayout()
         words.setSpacing(2)
-        words.addWidget(Text(title, size=16, weight=SEMIBOLD, tone=tone, wraps=True))
-        words.addWidget(Text(line.why, tone=quiet, wraps=True))
+        what = Text(title, size=16, weight=SEMIBOLD, tone=tone, wraps=True)
+        lay_out(words, what, Text(line.why, tone=quiet, wraps=True))
         if line.to_do:
-            to_do = QHBoxLayout()
+            word = Text(tr("To do"), weight=SEMIBOLD, tone=tone)
+            to_do = lay_out(QHBoxLayout(), (word, 0, top), (Text(line.to_do, tone=tone, wraps=True), 1))
             to_do.setSpacing(12)
-            to_do.addWidget(Text(tr("To do"), weight=SEMIBOLD, tone=tone), 0, Qt.AlignmentFlag.AlignTop)
-            to_do.addWidget(Text(line.to_do, tone=tone, wraps=True), 1)
             words.addLayout(to_do)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(IconMark(VERDICT_ICONS[line.verdict], tone=tone), 0, Qt.AlignmentFlag.AlignTop)
-        self._row.addLayout(words, 1)
+        mark = IconMark(VERDICT_ICONS[line.verdict], tone=tone)
+        row = lay_out(QHBoxLayout(self), (mark, 0, top), (words, 1), margins=(16, 12, 16, 12), spacing=12)
         if can_repeat and line.side is not None:
-            word = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
-            self.repeat = Button(word, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
-            self._row.addWidget(self.repeat, 0, Qt.AlignmentFlag.AlignBottom)
+            stated = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
+            self.repeat = Button(stated, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
+            row.addWidget(self.repeat, 0, Qt.AlignmentFlag.AlignBottom)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self._apply_theme()
-
-    @property
-    def side(self) -> Side | None:
-        """The leg whose free motion mends it."""
-        return self._line.side
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        c, box = current_theme().colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        is_grave = self._line.is_grave
-        fill, edge = (c.caution, c.caution_edge) if is_grave else (c.surface, c.control)
-        current_theme().paint_box(QPainter(self), box, fill, edge, 1)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(16), px(12), px(16), px(12))
-        self._row.setSpacing(px(12))
+        set_ground(self, Ground("caution", "caution_edge") if is_grave else Ground("surface", "control"))
 
 
 class JointsFigure(BodyFigure):
@@ -296,7 +233,7 @@ class JointsFigure(BodyFigure):
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         painter = QPainter(self)
         if self._has_pelvis:
             box = QRectF(0, 0, px(SENSOR[0]), px(SENSOR[1]))

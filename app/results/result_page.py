@@ -5,13 +5,14 @@ from enum import Enum, auto
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut, QShowEvent
-from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.results.differs_card import DiffersCard
 from app.results.headline_text import HeadlineText
 from app.results.result_parts import PageRoom, ResultParts
 from app.results.summary_text import door_words, strides_in_short
-from app.results.thin_line import ThinLine, ThinLineChoice
+from app.results.thin_line import ThinLine
+from app.results.tools_row import ANSWER, COMPARE, RECORDING, STRIDES, TABLE, WALK, WHOLE, ToolsRow
 from app.results.value_tile import TileRow
 from app.summary.agreed import agreed_with
 from app.summary.conditions import Part, conditions_of
@@ -26,18 +27,15 @@ from app.summary.reference_bands import age_and_height
 from app.summary.request import AnalysedVisit, default_walks
 from app.summary.tiles import tiles_of
 from app.summary.visits import ComparedVisits
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
-from app.widgets.choice import Choice
 from app.widgets.detail_button import DetailButton
 from app.widgets.heard_order import hear_as_laid_out
-from app.widgets.segmented import Segmented
-from app.widgets.text import Text
-from app.widgets.themed import Themed
+from app.widgets.lay_out import lay_out
 from app.widgets.toggle import Toggle
 from app.wording.recordings import with_shown_names
-from app.wording.translation import later, tr
+from app.wording.translation import tr
 from core.body import Joint, JointKind, Side, Site, knee_of
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
@@ -45,19 +43,12 @@ from core.session import RecordingKind
 
 LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 
-# the views
-ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
-CURVES, TABLE = "curves", "table"  # of the summary, where there is no room for both
-WALK, RECORDING = later("Whole walk"), later("Whole recording")
-
-RECORDINGS = (116, 240)  # px: the narrowest and the widest that their box becomes
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 BOTTOM = 40  # px high: the row that closes the summary
 OTHERS, COMPACT_OTHERS = 298, 270  # px high: all else of a summary than charts and table
 SECOND_TOOLS = 56  # px high: where the tools take two rows
 CHART = 222  # px high: what the charts have before the table gets more rows
-TOOLS = 44  # px high
 LEGS, LEGS_SHARE = 144, 0.135  # px wide, or of the page
-GAP = 12  # px between what is in one row
 
 
 class Behind(Enum):
@@ -68,7 +59,7 @@ class Behind(Enum):
     QUALITY = auto()
 
 
-class ResultPage(Themed):
+class ResultPage(QWidget):
     """`parts`: those that were made before. `reported`: the text in the bar beneath the page has changed."""
 
     reported = Signal()
@@ -84,29 +75,16 @@ class ResultPage(Themed):
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._room = PageRoom()
         self._width = self._height = 0.0
-        self._has_tools = False  # views, recordings and methods in one row
-        self._has_choices = False  # views and what else is chosen in one row
-        self._has_thin_name = False  # before the choice of the thin line
         self._thin: Mapping[Side, ThinBend] = {}
         self._drawn: tuple[AnalysedVisit, RecordingAnalysis, MeanLegs | None] | None = None
         self._mended_by_motion: Side | None = None  # whose free motion would mend the gravest cause
         self._has_band, self._has_chosen_legs = True, False
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
-        self.view = Segmented(
-            tr("View"),
-            [
-                (ANSWER, tr("Summary"), ""),
-                (COMPARE, tr("Compare"), ""),
-                (WHOLE, tr(WALK), ""),
-                (STRIDES, tr("Strides"), ""),
-            ],
-        )
-        self.to_answer = Button(tr("Summary"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
-        self.recordings = Choice(tr("Recording"))
-        self.thin = ThinLineChoice()
-        self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
-        self.part = Segmented(tr("Part"), [(CURVES, tr("Curves"), ""), (TABLE, tr("Table"), "")])
+        tools = self._tools = ToolsRow(parts.compare, parts.whole.methods)
+        self.view, self.to_answer, self.part = tools.view, tools.to_answer, tools.part
+        self.recordings, self.thin, self.thin_name = tools.recordings, tools.thin, tools.thin_name
+        self.show_legs = tools.show_legs
         self.headline = HeadlineText()
         self.tiles = TileRow()
         self.differs = DiffersCard()
@@ -114,7 +92,6 @@ class ResultPage(Themed):
         self.repeat = Button(tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
         self.repeat.hide()
         self.all_figures = Toggle(tr("All values"), tr("F"), is_on=False)
-        self.show_legs = Toggle(tr("Legs"), tr("G"), is_on=True)
         self.cycles = parts.cycles
         self.legs = parts.legs
         self.strides = parts.strides
@@ -132,16 +109,8 @@ class ResultPage(Themed):
         is_live: bool = False,
         course: tuple[CourseVisit, ...] = (),
     ) -> None:
-        """Show the recording that was on the screen, if `visit` has it, else the walk of a report or the first.
-
-        Parameters
-        ----------
-        can_choose
-            Whether somebody keeps which strides are left out: see `strides`.
-        is_live
-            Whether the sensors are still worn, so that a free motion can be repeated.
-        course
-            The patient's visits in order of time, this one the last: the answer reports the changes since.
+        """Show the recording in sight if `visit` has it, else a report's walk or the first.
+        `course`: in time order; `can_choose`: strides may be left out; `is_live`: free motion repeatable.
         """
         self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
         session, analysis = visit.session, visit.analysis
@@ -151,17 +120,11 @@ class ResultPage(Themed):
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
         self.thin.show_visit(visit)
         names = [recording.name for recording in analysis.recordings]
-        self.recordings.blockSignals(True)
-        self.recordings.clear()
-        for name in names:
-            self.recordings.addItem(str(called.get(name, name)), name)
         proposed = default_walks(visit)
         first = names.index(proposed[-1]) if proposed else 0
-        self.recordings.setCurrentIndex(names.index(shown) if shown in names else first)
-        self.recordings.blockSignals(False)
-        self.recordings.updateGeometry()
+        self.recordings.offer([(str(called.get(name, name)), name) for name in names], shown, first)
         self.recordings.setVisible(bool(names))
-        if self._is_placed_otherwise():
+        if self._is_to_be_placed():
             self._place()
         self._on_recording_changed()
         self._fit_parts()
@@ -177,17 +140,14 @@ class ResultPage(Themed):
             self._show_thin()
 
     def set_room(self, width: float, height: float) -> None:
-        """Fold the page as far as its room, in px of the design, asks for it.
-
-        Where there is little room curves and table are shown one at a time, and legs take the place of the ankle.
-        """
+        """Fold the page to its room in design px: curves or table, legs in the ankle's place, if little."""
         room = PageRoom.of(width, height)
         self._width, self._height = width, height
         if not self._has_chosen_legs and self.show_legs.isChecked() is room.is_compact:
             self.show_legs.show_on(not room.is_compact)  # where there is little room the ankle is shown first
             self._show_moving_legs()
-        if room != self._room or self._is_placed_otherwise():
-            self._room = room
+        self._room = room
+        if self._is_to_be_placed():
             self._place()
         self.legs.setFixedWidth(max(px(max(LEGS, LEGS_SHARE * width)), self.legs.least_width))
         self._fit_parts()
@@ -195,13 +155,13 @@ class ResultPage(Themed):
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
-        if self._is_placed_otherwise():  # words are measured by the fonts that they are shown in
+        if self._is_to_be_placed():  # words are measured by the fonts that they are shown in
             self._place()
 
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room; alone it has all of the page."""
         others = COMPACT_OTHERS if self._room.is_compact else OTHERS + CHART
-        others += 0 if self._has_choices else SECOND_TOOLS
+        others += 0 if self._tools.fitting.has_choices else SECOND_TOOLS
         self.differs.set_room(self._height - others, is_compact=self._room.is_compact)
 
     def focus(self) -> None:
@@ -257,54 +217,26 @@ class ResultPage(Themed):
         return [*choices, *shown, *self.quality.tab_order, self.door, self.repeat, self.all_figures]
 
     def _build(self) -> None:
-        self._controls = QGridLayout()
-        self._against = QWidget()
-        self._against_row = QHBoxLayout(self._against)
-        self._against_row.setContentsMargins(0, 0, 0, 0)
-        self._against_row.addWidget(self.compare.kinds)
-        self._against_row.addWidget(self.compare.bases)
-        self._compared_as = QWidget()  # the choice of the comparison's views, where its card has no room for it
-        compared_as = QHBoxLayout(self._compared_as)
-        compared_as.setContentsMargins(0, 0, 0, 0)
-        self._choices = QWidget()
-        choices = QHBoxLayout(self._choices)
-        choices.setContentsMargins(0, 0, 0, 0)
-        self.thin_name = Text(tr("Thin line"), size=12, tone="ink2")
-        for widget in (self.part, self.recordings, self.thin_name, self.thin, self.show_legs, self._against):
-            choices.addWidget(widget)
         self._figures = QWidget()
-        self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
-        self._tables.setContentsMargins(0, 0, 0, 0)
-        self._tables.addWidget(self.cycles.peaks, 1)
-        right = QVBoxLayout()
-        right.addWidget(self.cycles.time_distance, 1)
-        right.addWidget(self.cycles.hips, 1)
-        self._tables.addLayout(right, 1)
-        self._columns = QHBoxLayout()
-        for widget, share in (
-            (self.whole, 1),
-            (self.cycles, 1),
-            (self.legs, 0),
-            (self.strides, 0),
-            (self.compare, 1),
-            (self._figures, 1),
-            (self.quality, 1),
-        ):
-            self._columns.addWidget(widget, share)
-        self._bottom = QHBoxLayout()
-        self._bottom.addWidget(self.door, 1)
-        self._bottom.addWidget(self.repeat)
-        self._bottom.addWidget(self.all_figures)
+        right = lay_out(QVBoxLayout(), (self.cycles.time_distance, 1), (self.cycles.hips, 1))
+        tables = ((self.cycles.peaks, 1), (right, 1))
+        self._tables = lay_out(QBoxLayout(ACROSS, self._figures), *tables, margins=0, spacing=12)
+        wide = (self.whole, self.cycles, self.compare, self._figures, self.quality)
+        parts = (self.whole, self.cycles, self.legs, self.strides, self.compare, self._figures, self.quality)
+        self._columns = lay_out(QHBoxLayout(), *((part, int(part in wide)) for part in parts), spacing=12)
+        bottom = lay_out(QHBoxLayout(), (self.door, 1), self.repeat, self.all_figures, spacing=12)
         self.all_figures.set_face(height=BOTTOM)
-        self.show_legs.set_face(height=TOOLS)
-        self._page = QVBoxLayout(self)
-        self._page.addLayout(self._controls)
-        self._page.addWidget(self._compared_as, 0, Qt.AlignmentFlag.AlignLeft)
-        self._page.addWidget(self.headline)
-        self._page.addWidget(self.tiles)
-        self._page.addLayout(self._columns, 1)
-        self._page.addWidget(self.differs)
-        self._page.addLayout(self._bottom)
+        self._page = lay_out(
+            QVBoxLayout(self),
+            self._tools,
+            (self._tools.beneath, 0, Qt.AlignmentFlag.AlignLeft),
+            self.headline,
+            self.tiles,
+            (self._columns, 1),
+            self.differs,
+            bottom,
+            spacing=10,
+        )
         self._place()
 
     def _connect(self) -> None:
@@ -333,32 +265,16 @@ class ResultPage(Themed):
             shortcut.activated.connect(turn)
 
     def _place(self) -> None:
-        """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
-        for widget in (self.view, self.to_answer, self.whole.methods, self._choices):
-            self._controls.removeWidget(widget)
-        left = Qt.AlignmentFlag.AlignLeft
-        self._has_tools, self._has_choices, self._has_thin_name = self._fitting
-        self._controls.addWidget(self.view, 0, 0, left)
-        self._controls.addWidget(self.to_answer, 0, 1, left)
-        self._controls.setColumnStretch(4, 1)
-        if self._has_choices:
-            self._controls.addWidget(self._choices, 0, 2)
-        else:
-            self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
-        if self._room.is_narrow:
-            self._against_row.insertWidget(2, self.compare.view)
-        elif self._room.is_compact and (row := self._compared_as.layout()) is not None:
-            row.addWidget(self.compare.view)
-        room, has_methods = self._room, self._has_tools and not self._room.is_narrow
-        self.whole.place(has_methods=not has_methods, is_narrow=room.is_narrow, is_wide=room.has_two_tables)
-        if has_methods:
-            self._controls.addWidget(self.whole.methods, 0, 3)
+        """Put the tools into one row, where they fit; the methods go under the curves where they do not."""
+        self._tools.place()
+        room = self._room
+        self.whole.place(has_methods=not self._tools.has_methods, is_narrow=room.is_narrow, is_wide=room.has_two_tables)
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
-        self.strides.set_charts_beside(self._room.has_strides_beside)
-        self.tiles.set_brief(self._room.is_compact)
+        self.strides.set_charts_beside(room.has_strides_beside)
+        self.tiles.set_brief(room.is_compact)
+        scaled(self._page.setContentsMargins, self._side, 12, self._side, 8)
         self._fit_table()
         hear_as_laid_out(self)
-        self._apply_theme()
         self._offer()
 
     def _fit_parts(self) -> None:
@@ -369,8 +285,7 @@ class ResultPage(Themed):
         right = [card for card in (cycles.time_distance, cycles.hips) if not card.isHidden()]
         needed = _least_width(cycles.peaks) + max(map(_least_width, right), default=0) + self._tables.spacing()
         does_fit = room.has_two_tables and needed <= self._inner_width
-        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
-        self._tables.setDirection(across if does_fit else down)
+        self._tables.setDirection(ACROSS if does_fit else DOWN)
 
     @property
     def _inner_width(self) -> int:
@@ -382,39 +297,8 @@ class ResultPage(Themed):
         """The margin at either side, as of the bar beneath, in px of the design."""
         return 24 if self._room.is_on_grid else 16
 
-    def _is_placed_otherwise(self) -> bool:
-        return (self._has_tools, self._has_choices, self._has_thin_name) != self._fitting
-
-    @property
-    def _fitting(self) -> tuple[bool, bool, bool]:
-        return self._do_tools_fit(), self._do_choices_fit(), self._has_room_for_name()
-
-    def _do_tools_fit(self) -> bool:
-        """Whether views, recordings and methods fit into one row."""
-        tools = (self.view, self.recordings, self.whole.methods)
-        return self._inner_width >= sum(one.sizeHint().width() for one in tools) + px(3 * GAP)
-
-    def _do_choices_fit(self) -> bool:
-        """Whether the views fit into one row with what is chosen in the one that is shown."""
-        if self._room.is_narrow:
-            return False
-        of_answer = self._least_of_choices()
-        of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
-        of_view = of_comparison if self.view.choice == COMPARE else of_answer
-        needed = self.view.sizeHint().width() + of_view + px(3 * GAP)
-        return self._inner_width >= needed
-
-    def _least_of_choices(self) -> int:
-        """What the choices of a summary need at least, with the gaps between them."""
-        other = self.part if self._room.is_compact else self.thin
-        shown = (other, self.recordings, self.show_legs)
-        return sum(map(_least_width, shown)) + px((len(shown) - 1) * GAP)
-
-    def _has_room_for_name(self) -> bool:
-        """Whether the thin line's name has room before its choice, with nothing cut."""
-        shown = (self.view, self.recordings, self.thin_name, self.thin, self.show_legs)
-        needed = sum(one.sizeHint().width() for one in shown) + px(len(shown) * GAP)
-        return self._inner_width >= needed
+    def _is_to_be_placed(self) -> bool:
+        return self._tools.is_to_be_placed(self._room, self._inner_width)
 
     def _offer(self) -> None:
         """Offer the views that this recording has."""
@@ -438,7 +322,7 @@ class ResultPage(Themed):
 
     def _show_parts(self) -> None:
         """Show what belongs to the view, or the details behind the answer."""
-        if self._is_placed_otherwise():  # each view has choices of its own
+        if self._is_to_be_placed():  # each view has choices of its own
             self._place()
             return
         recording, view = self.recording, self.view.choice
@@ -456,10 +340,10 @@ class ResultPage(Themed):
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > (1 if view == ANSWER else 0))
         has_thin = has_curves and self.thin.count() > 1 and not is_compact
         self.thin.setVisible(has_thin)
-        self.thin_name.setVisible(has_thin and self._has_thin_name)
+        self.thin_name.setVisible(has_thin and self._tools.fitting.has_thin_name)
         self.show_legs.setVisible(has_curves)
-        self._against.setVisible(view == COMPARE)
-        self._compared_as.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)
+        self._tools.against.setVisible(view == COMPARE)
+        self._tools.beneath.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)
         self.compare.setVisible(view == COMPARE)
         self.headline.setVisible(has_answer and behind is Behind.NOTHING and bool(self.headline.text))
         self.tiles.setVisible(is_answer)
@@ -528,7 +412,7 @@ class ResultPage(Themed):
             return
         facts = Facts(visit, recording, course=self._course)
         headline = self._headline = headline_of(facts)
-        self.thin.offer(facts, headline)
+        self.thin.offer_beside(facts, headline)
         if self.thin.walks:
             facts = Facts(visit, recording, self.thin.walks, self._course)
             headline = self._headline = headline_of(facts)
@@ -639,22 +523,6 @@ class ResultPage(Themed):
             self._show_walk()  # of one condition with the other walk it now stands alone, or together again
         else:
             self._show_thin()
-
-    def _apply_theme(self) -> None:
-        px, is_compact = current_theme().px, self._room.is_compact
-        side = px(self._side)
-        self._page.setContentsMargins(side, px(12), side, px(8))
-        self._page.setSpacing(px(10))
-        for choice in (self.recordings, self.thin):
-            choice.setFixedHeight(px(TOOLS))
-        self._controls.setSpacing(px(8 if is_compact else 12))
-        self._columns.setSpacing(px(12))
-        self._bottom.setSpacing(px(12))
-        self._tables.setSpacing(px(12))
-        for part in (self._against, self._choices):
-            layout = part.layout()
-            assert layout is not None
-            layout.setSpacing(px(8 if is_compact and part is self._choices else 12))
 
 
 def _least_width(widget: QWidget) -> int:

@@ -10,6 +10,7 @@ from app.summary.conditions import by_hand_in_words
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.stride_list import StrideLine, StrideList
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.findings import NAMES
@@ -36,18 +37,9 @@ class StridesPage(Card):
         self.all = Button(tr("Include all again"), ButtonKind.QUIET, Icon.REPEAT, height=44)
         self.legend = Text(tr("Grey: mean of the same side."), size=12, tone="ink2")
         self.note = Text(size=12, tone="ink2", wraps=True)
-        self._buttons = QHBoxLayout()
-        self._buttons.addWidget(self.turn)
-        self._buttons.addWidget(self.all)
-        self._buttons.addStretch(1)
-        head = QHBoxLayout()
-        head.addWidget(Text(tr("Strides"), size=16, weight=SEMIBOLD))
-        head.addStretch(1)
-        head.addWidget(self.legend)
-        self.column.addLayout(head)
-        self.column.addWidget(self.list, 1)
-        self.column.addLayout(self._buttons)
-        self.column.addWidget(self.note)
+        head = lay_out(QHBoxLayout(), Text(tr("Strides"), size=16, weight=SEMIBOLD), 1, self.legend)
+        buttons = lay_out(QHBoxLayout(), self.turn, self.all, 1)
+        lay_out(self.column, head, (self.list, 1), buttons, self.note)
         self.list.chosen.connect(self._on_chosen)
         self.list.turned.connect(self._on_turned)
         self.turn.clicked.connect(self.list.turn)

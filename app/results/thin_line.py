@@ -46,33 +46,27 @@ class ThinLineChoice(Choice):
         self.currentIndexChanged.connect(self._on_chosen)  # what `offer` sets is not notified
 
     def show_visit(self, visit: AnalysedVisit) -> None:
-        """Take the walks of this session; `offer` follows."""
+        """Take the walks of this session; `offer_beside` follows."""
         agreed = agreed_with(visit.session)
         self._visit, self._walks = visit, walks_alone(visit.analysis, visit.session.recordings, agreed)
         self._is_own, self._taken = False, None
 
-    def offer(self, facts: Facts, headline: Headline) -> None:
+    def offer_beside(self, facts: Facts, headline: Headline) -> None:
         """Offer what the walk of these facts can stand beside; unless somebody chose, the headline's visit is drawn."""
         before, self._shown = self.currentData(), facts.walk.name
         called = self._visit.shown_names if self._visit is not None else {}
         walked = walked_visits(facts.course, facts.condition)
         days = [visit.day for visit in walked]
-        self.blockSignals(True)
-        self.clear()
+        lines: list[tuple[str, object]] = []
         if len(walked) > 1:
-            self.addItem(tr("Last visit, {day}").format(day=day_in_words(days[-2], days)), ThinLine.LAST_VISIT)
+            lines.append((tr("Last visit, {day}").format(day=day_in_words(days[-2], days)), ThinLine.LAST_VISIT))
         if len(walked) > 2:
-            self.addItem(tr("First visit, {day}").format(day=day_in_words(days[0], days)), ThinLine.FIRST_VISIT)
-        for name in self._walks:
-            if name != self._shown:
-                self.addItem(str(called.get(name, name)), name)
-        self.addItem(tr("No thin line"), ThinLine.NOTHING)
+            lines.append((tr("First visit, {day}").format(day=day_in_words(days[0], days)), ThinLine.FIRST_VISIT))
+        lines += [(str(called.get(name, name)), name) for name in self._walks if name != self._shown]
+        lines.append((tr("No thin line"), ThinLine.NOTHING))
         proposed = ThinLine.FIRST_VISIT if headline.rule is Rule.SINCE_FIRST else ThinLine.LAST_VISIT
-        chosen = self.findData(before if self._is_own else proposed)
-        self.setCurrentIndex(chosen if chosen >= 0 else self.findData(ThinLine.NOTHING))
-        self.blockSignals(False)
+        self.offer(lines, before if self._is_own else proposed, len(lines) - 1)
         self.setVisible(self.count() > 1)
-        self.updateGeometry()
 
     def turn(self) -> None:
         """Take the line away, or draw that again which was taken, else the first that there is."""
@@ -90,13 +84,7 @@ class ThinLineChoice(Choice):
         return (self._shown, chosen) if isinstance(chosen, str) else ()
 
     def compared(self, facts: Facts, visits: Sequence[ComparedVisits] | None) -> tuple[Comparison | None, str]:
-        """The walk's condition with what was chosen, or why there is no thin line.
-
-        Parameters
-        ----------
-        visits
-            Those of the patient; None while they are being read.
-        """
+        """Give the walk's condition with the choice, or why there is no thin line; `visits` None: being read."""
         chosen, visit = self.currentData(), self._visit
         if visit is None or self._shown not in self._walks or chosen in (None, ThinLine.NOTHING):
             return None, ""

@@ -3,17 +3,19 @@
 import math
 from collections.abc import Sequence
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPolygonF
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.summary.tiles import Tile, TileValue
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.widgets.themed import Themed
 from core.body import Side
 
 HEIGHT, BRIEF_HEIGHT = 93, 64
@@ -28,18 +30,14 @@ GOAL = (2, 16)
 ARROW = (9, 8)
 
 
-class TileRow(Themed):
+class TileRow(QWidget):
     """All four beside each other, equally wide."""
 
     def __init__(self) -> None:
         super().__init__()
         self.tiles = [ValueTile() for _ in range(4)]
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        for tile in self.tiles:
-            self._row.addWidget(tile, 1)
+        lay_out(QHBoxLayout(self), *((tile, 1) for tile in self.tiles), margins=0, spacing=12)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._apply_theme()
 
     def show_tiles(self, tiles: Sequence[Tile]) -> None:
         for widget, tile in zip(self.tiles, tiles, strict=True):
@@ -49,20 +47,18 @@ class TileRow(Themed):
         for tile in self.tiles:
             tile.set_brief(is_brief)
 
-    def _apply_theme(self) -> None:
-        self._row.setSpacing(px(12))
 
-
-class ValueTile(Themed):
+class ValueTile(Painted):
     """Painted; what is cut for want of room is in its tooltip. In brief: no scale, the change at the right."""
 
     accessible_role = QAccessible.Role.StaticText
 
     def __init__(self) -> None:
         super().__init__()
-        self._is_brief = False
         self.tile: Tile | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        set_ground(self, Ground("surface", "line", radius=CARD_RADIUS))
+        self.set_brief(is_brief=False)
 
     def show_tile(self, tile: Tile) -> None:
         self.tile = tile
@@ -72,38 +68,24 @@ class ValueTile(Themed):
 
     def set_brief(self, is_brief: bool) -> None:
         self._is_brief = is_brief
-        self.updateGeometry()
+        scaled(self.setMinimumSize, LEAST, BRIEF_HEIGHT if is_brief else HEIGHT)
         self.update()
-
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST), px(BRIEF_HEIGHT if self._is_brief else HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
         """What is painted, and where."""
         if self.tile is None:
             return []
-        name = self._name(self.tile)
         return [
-            name,
+            self._name(self.tile),
             *(text for text, _ in self.value_texts(self.tile)),
             *self.change_texts(self.tile),
             *self.goal_texts(self.tile),
         ]
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, tile = current_theme(), self.tile
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        theme.paint_box(painter, box, theme.colours.surface, theme.colours.line, 1, CARD_RADIUS)
         if tile is None:
             return
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
         for text, side in self.value_texts(tile):
             if side is not None:
                 left = text.box.left() + QFontMetrics(text.font).horizontalAdvance(text.text) + theme.px(8)
@@ -114,7 +96,7 @@ class ValueTile(Themed):
             self._paint_bar(painter, tile, bar)
 
     def _name(self, tile: Tile) -> PaintedText:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         font = theme.font(NAME - self._is_brief, MEDIUM)
         box = QRectF(px(SIDE), px(7 if self._is_brief else 9), self.width() - 2 * px(SIDE), px(20))
         metrics = QFontMetrics(font)
@@ -124,7 +106,7 @@ class ValueTile(Themed):
 
     def value_texts(self, tile: Tile) -> list[tuple[PaintedText, Side | None]]:
         """Each value, with the side whose chip follows it; the unit is text of its own."""
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         top, height, left = px(26 if self._is_brief else 31), px(34), float(px(SIDE))
         is_two = len(tile.values) > 1
         size = VALUE - (4 if self._is_brief else 0) - (4 if is_two else 0)
@@ -171,7 +153,7 @@ class ValueTile(Themed):
         """Up or down before the change; filled beyond error, outlined within it."""
         if tile.change.rises is None or not (texts := self.change_texts(tile)):
             return
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         width, height = px(ARROW[0]), px(ARROW[1])
         left = texts[0].box.left() - width - px(5)
         middle = texts[0].box.center().y()
@@ -185,7 +167,6 @@ class ValueTile(Themed):
 
     def bar_of(self, tile: Tile) -> QRectF | None:
         """Where the scale is; None where there is no room, or nothing to show on it."""
-        px = current_theme().px
         if self._is_brief or not any(math.isfinite(one.value) for one in tile.values):
             return None
         ends = [
@@ -212,7 +193,7 @@ class ValueTile(Themed):
         return [PaintedText(tile.goal, QRectF(left, px(27), width, px(16)), font, "ink2")]
 
     def _paint_bar(self, painter: QPainter, tile: Tile, bar: QRectF) -> None:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         c, middle = theme.colours, bar.center().y()
         theme.paint_box(painter, bar, c.track, radius=2)
         if tile.zone is not None:
@@ -242,7 +223,3 @@ class ValueTile(Themed):
     def _x(self, tile: Tile, value: float, bar: QRectF) -> float:
         low, high = tile.scale
         return bar.left() + bar.width() * min(max((value - low) / (high - low), 0.0), 1.0)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -6,13 +6,13 @@ from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.translation import later, tr
 from core.hip.results import HipAngle
 from core.results import JointAngle, RecordingAnalysis
@@ -35,7 +35,7 @@ KEYS = later("Zoom: wheel or + −. Move: drag or Page Up, Page Down. Read value
 EVENT_KEYS = later("Keys [ and ] step through initial contacts and toe-offs. Pre-swing: heel rise to toe-off.")
 
 
-class WholePage(Themed):
+class WholePage(QWidget):
     """The curves, and what must be known to read them; the page around may take `methods` into a row of its own."""
 
     def __init__(self) -> None:
@@ -55,24 +55,18 @@ class WholePage(Themed):
         self.to_whole = Button(tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(size=12, tone="ink2", wraps=True)
         self._notes = QWidget()
-        notes = QVBoxLayout(self._notes)
-        notes.setContentsMargins(0, 0, 0, 0)
-        notes.setSpacing(2)
-        notes.addWidget(self.shown)
-        notes.addWidget(self.hint)
+        lay_out(QVBoxLayout(self._notes), self.shown, self.hint, margins=0).setSpacing(2)
         self._foot = QGridLayout()
         self._foot.setColumnStretch(0, 1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self.charts, 1)
-        self._column.addLayout(self._foot)
+        lay_out(QVBoxLayout(self), (self.charts, 1), self._foot, margins=0, spacing=12)
+        scaled(self._foot.setHorizontalSpacing, 16)
+        scaled(self._foot.setVerticalSpacing, 8)
         policy = self.to_whole.sizePolicy()
         policy.setRetainSizeWhenHidden(True)  # what comes and goes must not move what stays
         self.to_whole.setSizePolicy(policy)
         self.methods.chosen.connect(self._show_curves)
         self.charts.view_changed.connect(self._on_view_changed)
         self.to_whole.clicked.connect(self.charts.show_whole)
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -128,12 +122,6 @@ class WholePage(Themed):
         if is_whole and self.to_whole.hasFocus():
             self.charts.setFocus()
         self.to_whole.setVisible(not is_whole)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(12))
-        self._foot.setHorizontalSpacing(px(16))
-        self._foot.setVerticalSpacing(px(8))
 
 
 def _hip_curve(hip: HipAngle, method: str) -> Curve | None:

@@ -51,6 +51,13 @@ def pieces_of(recording: RecordingAnalysis, joint: Joint) -> Iterator[tuple[Plac
         yield Place.NOT_REPORTED, slice(end, n)
 
 
+def shown_deg(place: Place, values_rad: FloatArray) -> FloatArray:
+    """A piece in degrees as it is shown: a shape has its mean taken away."""
+    values_deg = np.rad2deg(values_rad)
+    is_lowered = place is Place.SHAPE and np.isfinite(values_deg).any()
+    return np.asarray(values_deg - np.nanmean(values_deg)) if is_lowered else values_deg
+
+
 def places(analysis: Analysis, joint: Joint) -> list[Place]:
     """Where curves of a joint lie in any recording."""
     used = {p for r in analysis.recordings if joint in r.measured for p, _ in pieces_of(r, joint)}
@@ -74,10 +81,7 @@ def name_of_view(analysis: Analysis, joint: Joint) -> str:
 
 
 def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
-    """Every verdict with its reasons, a table per recording, in Markdown; recordings are called as their timelines.
-
-    Walks come first.
-    """
+    """Give every verdict with reasons as Markdown, a table per recording named as its timeline, walks first."""
     lines = ["# Data quality", "", PURPOSE]
     walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
     in_order = sorted(all_that_is_stated(analysis), key=lambda one: one.recording not in walks)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.review.data_quality_panel import Place, pieces_of
+from app.review.data_quality_panel import Place, pieces_of, shown_deg
 from core.body import Joint
 from core.gait.phases import PHASES, Phase
 from core.results import RecordingAnalysis
@@ -14,16 +14,13 @@ BELOW, LEAST_BELOW_DEG = 0.15, 5.0  # of the curve's range
 
 
 def lanes_of(recording: RecordingAnalysis, joint: Joint) -> Mapping[Phase, tuple[FloatArray, FloatArray]]:
-    """Each phase's times and heights in degrees (k,): a stretch for each time the foot is in it, NaN behind each.
-
-    None while the curve of the joint is not shown, or where the times of the leg may not be reported.
-    """
-    gait, shown_deg = recording.gait.get(joint.side), _shown_deg(recording, joint)
-    known_deg = shown_deg[np.isfinite(shown_deg)]
+    """Give each phase's times and heights in degrees (k,), NaN after each stretch; None where hidden."""
+    gait, curve_deg = recording.gait.get(joint.side), _curve_deg(recording, joint)
+    known_deg = curve_deg[np.isfinite(curve_deg)]
     if gait is None or not len(known_deg) or not recording.verdicts.leg(joint.side).timing.is_reported:
         return {}
     height_deg = float(known_deg.min() - max(BELOW * np.ptp(known_deg), LEAST_BELOW_DEG))
-    shown_phase = np.where(np.isfinite(shown_deg), gait.phase, PHASES.index(Phase.UNKNOWN))
+    shown_phase = np.where(np.isfinite(curve_deg), gait.phase, PHASES.index(Phase.UNKNOWN))
     borders = np.flatnonzero(np.diff(shown_phase)) + 1
     first = np.concatenate([[0], borders])
     last = np.concatenate([borders, [len(shown_phase) - 1]])
@@ -37,12 +34,10 @@ def lanes_of(recording: RecordingAnalysis, joint: Joint) -> Mapping[Phase, tuple
     return lanes
 
 
-def _shown_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
+def _curve_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
     """A joint's curve (n,) as it is shown, a shape about its own mean; NaN where it is not reported."""
     shown = np.full(len(recording.time_s), np.nan)
     for place, rows in pieces_of(recording, joint):
         if place is not Place.NOT_REPORTED:
-            shown[rows] = np.rad2deg(recording.measured[joint].angle_rad[rows])
-            if place is Place.SHAPE and np.isfinite(shown[rows]).any():
-                shown[rows] -= np.nanmean(shown[rows])
+            shown[rows] = shown_deg(place, recording.measured[joint].angle_rad[rows])
     return shown

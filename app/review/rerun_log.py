@@ -25,7 +25,7 @@ from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
 from app.review.answer_panel import NOTHING, panel
-from app.review.data_quality_panel import Place, document, is_pose, name_of_view, pieces_of, places
+from app.review.data_quality_panel import Place, document, is_pose, name_of_view, pieces_of, places, shown_deg
 from app.review.phase_lane import lanes_of
 from app.review.rrd_file import remove_chance
 from app.review.same_axes import BAND_SD, range_of
@@ -68,13 +68,7 @@ DRAWN = "Legs: drawn, not measured"
 
 
 def write_log(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write raw signals, angles by each method and their certainty, phases and events, with a layout for the viewer.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write raw signals, angles, certainty, phases, events and a layout as a Rerun log; raises OSError."""
     path.touch()  # Rerun reports an unwritable file in its own words, and not always
     timelines = _timelines(session)
     steps = {timelines[r.name]: found for r in analysis.recordings if (found := steps_of(r)) is not None}
@@ -288,9 +282,7 @@ def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> 
     for curve, values_rad in (curves | {"certainty": band_rad}).items():
         for place, rows in pieces_of(recording, joint):
             if values_rad is not None:
-                values_deg = np.rad2deg(values_rad[rows])
-                if place is Place.SHAPE and np.isfinite(values_deg).any():
-                    values_deg = values_deg - np.nanmean(values_deg)
+                values_deg = shown_deg(place, values_rad[rows])
                 yield from _series(place.entity(joint, curve), timeline, time_s[rows], values_deg)
                 if curve == "certainty":  # Rerun fills nothing: a stroke from edge to edge at each sample does
                     to_and_fro = np.repeat(time_s[rows], 2), values_deg.ravel()

@@ -30,15 +30,7 @@ BYTES = 2  # protobuf's kind of a field that has a length
 
 
 def remove_chance(path: Path, layout_name: bytes, name: bytes) -> None:
-    """Make a finished file the same at every writing; the layout's store is then called `name`, which is as long.
-
-    Raises
-    ------
-    OSError
-        The log has no end, because Rerun could not write it whole.
-    ValueError
-        A file of another version of Rerun.
-    """
+    """Make a finished file reproducible, its layout store renamed to `name` of equal length; OSError: no end."""
     with path.open("r+b") as file:
         position = FILE_HEADER_BYTES
         while True:

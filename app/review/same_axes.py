@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.review.data_quality_panel import Place, pieces_of
+from app.review.data_quality_panel import Place, pieces_of, shown_deg
 from app.review.phase_lane import lanes_of
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
@@ -14,12 +14,9 @@ MARGIN, LEAST_DEG = 0.05, 10.0  # round what is shown, of its range; so that noi
 
 
 def range_of(analysis: Analysis, kind: JointKind) -> tuple[float, float] | None:
-    """Lowest and highest degree of an axis that holds a joint of both legs, with its certainty and its phases.
-
-    Of walks, where there is one. None where no curve is shown.
-    """
+    """Give lowest and highest degree over both legs with certainty and phases; None if no curve is shown."""
     walks = [r for r in analysis.recordings if r.kind is RecordingKind.WALKING] or analysis.recordings
-    shown = [part for r in walks for side in Side for part in _shown_deg(r, kind.of(side))]
+    shown = [part for r in walks for side in Side for part in _parts_deg(r, kind.of(side))]
     known = [part[np.isfinite(part)] for part in shown]
     if not any(map(len, known)):
         return None
@@ -28,7 +25,7 @@ def range_of(analysis: Analysis, kind: JointKind) -> tuple[float, float] | None:
     return float(low - margin), float(high + margin)
 
 
-def _shown_deg(recording: RecordingAnalysis, joint: Joint) -> list[FloatArray]:
+def _parts_deg(recording: RecordingAnalysis, joint: Joint) -> list[FloatArray]:
     """A joint's curve with its band, each piece as it is shown, and its lanes."""
     if joint not in recording.measured:
         return []
@@ -36,8 +33,6 @@ def _shown_deg(recording: RecordingAnalysis, joint: Joint) -> list[FloatArray]:
     parts = [height_deg for _, height_deg in lanes_of(recording, joint).values()]
     for place, rows in pieces_of(recording, joint):
         if place is not Place.NOT_REPORTED:
-            angle_deg, sd_deg = np.rad2deg(angle.angle_rad[rows]), np.rad2deg(angle.sd_rad[rows])
-            if place is Place.SHAPE and np.isfinite(angle_deg).any():
-                angle_deg = angle_deg - np.nanmean(angle_deg)
+            angle_deg, sd_deg = shown_deg(place, angle.angle_rad[rows]), np.rad2deg(angle.sd_rad[rows])
             parts += [angle_deg - BAND_SD * sd_deg, angle_deg, angle_deg + BAND_SD * sd_deg]
     return parts

@@ -89,13 +89,7 @@ class Viewer:
         self._shown: dict[Path, subprocess.Popen[bytes]] = {}
 
     def open(self, session: Session, analysis: Analysis) -> None:
-        """Write the log and show it.
-
-        Raises
-        ------
-        ViewerRefusedError
-            No viewer, no screen, no room, or the viewer does not start.
-        """
+        """Write the log and show it; raises ViewerRefusedError (no viewer, screen or room, or no start)."""
         program, why = self._program, why_not(self._program)
         if program is None or why:
             raise ViewerRefusedError(why)

@@ -72,13 +72,7 @@ def packed(analysis: Analysis) -> bytes:
 
 
 def unpacked(content: bytes) -> Analysis:
-    """The analysis that `packed` was given.
-
-    Raises
-    ------
-    DamagedContentError
-        A byte is another one, or an earlier version has written it.
-    """
+    """Unpack what `packed` was given; raises DamagedContentError also for an earlier version's."""
     inside = memoryview(content)[DIGEST:]
     if hashlib.sha256(inside).digest() != content[:DIGEST]:
         raise DamagedContentError

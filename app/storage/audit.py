@@ -50,13 +50,7 @@ class Audit:
             yield from map(datetime.datetime.fromisoformat, session.scalars(required))
 
     def entries_of_others(self) -> int:
-        """How many entries this program did not add itself: more than before, and another station did something.
-
-        Raises
-        ------
-        LibraryError
-            The library does not answer.
-        """
+        """Count entries not added by this program, which show that another station acted; raises LibraryError."""
         added = self._unit.entries_added  # first: of its own one more may come meanwhile, which is then looked at twice
         with self._unit.reading() as session:
             return (session.scalar(select(func.max(AuditRow.number))) or 0) - added
@@ -68,36 +62,18 @@ class Audit:
             return row is not None and hmac.compare_digest(row.hash, checkpoint.hash)
 
     def note_rollback(self, first: int, last: int) -> None:
-        """Record that an administrator goes on without the entries `first` to `last`, which were seen before.
-
-        Raises
-        ------
-        NotAllowedError
-            The operator is not an administrator.
-        """
+        """Record that an administrator gives up the seen entries `first` to `last`; raises NotAllowedError."""
         with self._unit.writing(Role.ADMINISTRATOR) as session:
             note(self._unit, session, Action.EDIT, "library", accepted_without_entries=[first, last])
 
     def note(self, action: Action, subject: str, **details: str | float | bool) -> None:
-        """Record what was done outside of the library: an export, a print, a backup. No names in `details`.
-
-        Raises
-        ------
-        LibraryError
-            It cannot be recorded; then it must not be done either.
-        """
+        """Record an export, print or backup, without names in `details`; on LibraryError it must not be done."""
         with self._unit.writing(Role.VIEWER) as session:
             note(self._unit, session, action, subject, **details)
 
     @contextmanager
     def exporting(self, subject: str, **details: str | float | bool) -> Iterator[None]:
-        """Record an export before it is made; and where making it raises, that it was broken off.
-
-        Raises
-        ------
-        LibraryError
-            It cannot be recorded; then it is not made either.
-        """
+        """Record an export before it is made, and its abortion; raises LibraryError, and then it is not made."""
         self.note(Action.EXPORT, subject, **details)
         try:
             yield
@@ -156,10 +132,7 @@ def append(
     subject: str,
     details: Mapping[str, object],
 ) -> Checkpoint:
-    """Add an entry; `session` holds the write lock, so that nobody else takes the same number.
-
-    A login that only looks holds none: its entry waits until a station adds its own.
-    """
+    """Add an entry under the write lock of `session`; a read-only login's waits for a station's next entry."""
     connection = session.connection()
     if connection.info.get(ONLY_READS, False):
         session.execute(
@@ -168,7 +141,7 @@ def append(
         return end_of_audit(session)
     if connection.dialect.name == "postgresql":
         _add_readings(session, key, at)
-    return _append(session, key, at, operator, action, subject, details)
+    return _link(session, key, _unlinked(at, operator, action, subject, details))
 
 
 def _add_readings(session: OrmSession, key: bytes, at: datetime.datetime) -> None:
@@ -177,30 +150,21 @@ def _add_readings(session: OrmSession, key: bytes, at: datetime.datetime) -> Non
     waiting = session.scalars(select(ReadingRow).order_by(ReadingRow.at).limit(MANY)).all()
     for row in waiting:
         details = {"read_at": row.at, "login": row.login, "as": row.action, "details": row.details}
-        _append(session, key, at, row.operator, Action.VIEW, row.subject, details)
+        _link(session, key, _unlinked(at, row.operator, Action.VIEW, row.subject, details))
         session.delete(row)
 
 
-def _append(
-    session: OrmSession,
-    key: bytes,
-    at: datetime.datetime,
-    operator: str,
-    action: Action,
-    subject: str,
-    details: Mapping[str, object],
-) -> Checkpoint:
+def _unlinked(
+    at: datetime.datetime, operator: str, action: Action, subject: str, details: Mapping[str, object]
+) -> AuditEntry:
+    """An entry that follows no other yet."""
+    stated_at = at.astimezone(datetime.UTC).isoformat()
+    return AuditEntry(0, stated_at, operator, action.value, subject, canonical(details), "", "")
+
+
+def _link(session: OrmSession, key: bytes, unlinked: AuditEntry) -> Checkpoint:
     before = end_of_audit(session)
-    unsealed = AuditEntry(
-        number=before.number + 1,
-        at=at.astimezone(datetime.UTC).isoformat(),
-        operator=operator,
-        action=action.value,
-        subject=subject,
-        details=canonical(details),
-        previous_hash=before.hash,
-        hash="",
-    )
+    unsealed = replace(unlinked, number=before.number + 1, previous_hash=before.hash)
     entry = replace(unsealed, hash=hash_of(unsealed, key))
     if session.connection().dialect.name == "postgresql":  # where nobody but this function may
         session.execute(APPEND, asdict(entry))

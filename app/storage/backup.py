@@ -23,7 +23,6 @@ from pathlib import Path
 
 import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import select
-from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import end_of_audit, verify_rows
 from app.storage.data_key import KeyMaterial
@@ -35,7 +34,7 @@ from app.storage.journal.header import JournalRefusedError, read_header
 from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, made_beside
-from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
+from app.storage.stored import Action, Checkpoint, LibraryError
 from app.system.progress import Report
 from app.wording.translation import tr
 
@@ -58,19 +57,13 @@ def silent(_share: float, _what: str) -> None:
 class Backup:
     """A copy that was checked.
 
-    Attributes
-    ----------
-    checkpoint
-        Where the library's audit ended.
-    files, bytes
-        How much it holds.
-    faults
-        What is wrong with it and was wrong with the library already: recordings that are missing or damaged.
+    `files`, `bytes`: how much it holds.
+    `faults`: what is wrong with it and was wrong with the library already: recordings that are missing or damaged.
     """
 
     folder: Path
     made_at: datetime.datetime
-    checkpoint: Checkpoint
+    checkpoint: Checkpoint  # where the library's audit ended
     files: int
     bytes: int
     faults: tuple[str, ...] = ()
@@ -79,14 +72,7 @@ class Backup:
 def back_up(
     opened: OpenedLibrary, into: Path, report: Report = silent, now: Callable[[], datetime.datetime] = now_utc
 ) -> Backup:
-    """Copy the library into a new folder in `into`, and check the copy.
-
-    Raises
-    ------
-    LibraryError
-        There is no such folder, there is too little room, the copy is not what the library is, or the library's
-        database is damaged.
-    """
+    """Copy the library into a new folder in `into` and check the copy; raises LibraryError."""
     if opened.shared is not None:
         raise LibraryError(
             "This library is on the clinic's server and is backed up there",
@@ -126,17 +112,7 @@ def find_backups(into: Path) -> tuple[Backup, ...]:
 
 
 def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_utc) -> tuple[Backup, ...]:
-    """Remove the oldest if it is older than ninety days, never the latest; what was destroyed is gone with it.
-
-    One at each start: a clock that is wrong costs one, and is noticed.
-
-    What a kill left of a backup that was being made goes a day later.
-
-    Raises
-    ------
-    OSError
-        A folder cannot be removed.
-    """
+    """Remove one backup over 90 days, never the latest (a wrong clock costs one), and old unfinished ones."""
     old = tuple(backup for backup in find_backups(into)[:-1] if now() - backup.made_at > KEPT)[:1]
     for backup in old:
         (backup.folder / LIST).unlink()  # first: half a backup is none
@@ -150,21 +126,8 @@ def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_ut
 def restore(
     backup: Path, folder: Path, data_key: KeyMaterial | None, code: str, report: Report = silent
 ) -> tuple[str, ...]:
-    """Make a library of a backup in `folder`, which is empty or not there; returns the faults that it had.
-
-    What was deleted after the backup is there again, and what was recorded after it is not.
-
-    Parameters
-    ----------
-    data_key
-        As the keys' file of the backup gives it for a passphrase or for the recovery key.
-    code
-        The operator who restores it, for the audit.
-
-    Raises
-    ------
-    LibraryError
-        Not a backup, it is not what it was, it does not open with this key, or there is something in `folder`.
+    """Make a library of a backup in `folder`, empty or missing, and give its faults; raises LibraryError.
+    `data_key`: from the backup's key file; what came after the backup, deletions too, is undone.
     """
     reported, hashes = _read_list(backup)
     with made_beside(folder) as beside:
@@ -211,13 +174,7 @@ class _Work:
 
 
 def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, work: _Work) -> None:
-    """Copy page by page, as the library is at this moment, while others go on writing to it.
-
-    Raises
-    ------
-    OSError
-        The disk refuses it.
-    """
+    """Copy page by page, as of this moment, while others go on writing; raises OSError."""
     source = sqlite_engine(library / DATABASE, data_key, creates=False)
     target = sqlite_engine(folder / DATABASE, data_key)
     try:
@@ -268,35 +225,23 @@ def _copy(source: Path, target: Path, work: _Work) -> str:
 def _check(
     folder: Path, data_key: KeyMaterial | None, checkpoint: Checkpoint, hashes: dict[str, str], work: _Work
 ) -> tuple[str, ...]:
-    """Open the copy and read all of it; what the library knows to be otherwise comes back.
-
-    Raises
-    ------
-    LibraryError
-        It is not what was copied, or the database is damaged.
-    """
+    """Open the copy and read all of it; give known faults; raises LibraryError if it differs or is damaged."""
     for name, sha256 in hashes.items():
         if _sha256(folder / name, work) != sha256:
             raise LibraryError(
                 tr("The copy of {file} does not match the original").format(file=name),
                 "Try again, or choose another disk",
             )
-    database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
-    try:
+    with closing(Database(sqlite_engine(folder / DATABASE, data_key, creates=False))) as database:
         if database.faults():
             raise LibraryError("The database of this copy is damaged", "Choose an earlier backup, or another disk")
         with database.reading() as session:
-            faults = [f"audit {fault.number} {fault.what}" for fault in _audit_faults(session, data_key, checkpoint)]
+            audited = verify_rows(session, derived_keys(session, data_key).audit, checkpoint)
+            faults = [f"audit {fault.number} {fault.what}" for fault in audited.faults]
             for row in session.scalars(select(JournalRow).order_by(JournalRow.recording_id, JournalRow.segment)):
                 faults += _journal_faults(folder, row, data_key, hashes.get(f"{RECORDINGS}/{row.file}"))
-    finally:
-        database.close()
     work.add(work.database_bytes, "backup")
     return tuple(faults)
-
-
-def _audit_faults(session: OrmSession, data_key: KeyMaterial | None, checkpoint: Checkpoint) -> tuple[AuditFault, ...]:
-    return verify_rows(session, derived_keys(session, data_key).audit, checkpoint).faults
 
 
 def _journal_faults(folder: Path, row: JournalRow, data_key: KeyMaterial | None, sha256: str | None) -> list[str]:
@@ -324,12 +269,11 @@ def _sha256(path: Path, work: _Work) -> str:
 
 
 def _end_of_audit(folder: Path, data_key: KeyMaterial | None) -> Checkpoint:
-    database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
-    try:
-        with database.reading() as session:
-            return end_of_audit(session)
-    finally:
-        database.close()
+    with (
+        closing(Database(sqlite_engine(folder / DATABASE, data_key, creates=False))) as database,
+        database.reading() as session,
+    ):
+        return end_of_audit(session)
 
 
 def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:
@@ -344,13 +288,7 @@ def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:
 
 
 def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
-    """What a backup states about itself, and the hashes of its files but the database.
-
-    Raises
-    ------
-    LibraryError
-        It is none. What it states may come from anywhere, so only names that a library has are taken.
-    """
+    """Give a backup's own record and its files' hashes, only of names a library has; raises LibraryError."""
     try:
         reported = json.loads((folder / LIST).read_bytes())
         if reported["format"] != FORMAT or KEYS not in reported["files"]:

@@ -15,26 +15,17 @@ from pathlib import Path
 from threading import Lock
 from uuid import UUID
 
-from app.storage.files import hold, sync_folder
+from app.storage.files import hold, replacing, sync_folder
 from app.storage.journal.disk import PIECE_BYTES
 from app.storage.journal.header import JournalRefusedError, destroy_key, find_segments, read_header
 from app.storage.opened import OpenedLibrary
 
-BESIDE = ".new"
 _one_at_a_time = Lock()
 _log = logging.getLogger(__name__)
 
 
 def bring_home(opened: OpenedLibrary) -> frozenset[UUID]:
-    """Bring all segments home that nobody is writing; the recordings that something was brought of.
-
-    Raises
-    ------
-    LibraryGoneError
-        The library is not there.
-    OSError
-        A file cannot be read or written: it stays in the shelter, and those that were brought are in the library.
-    """
+    """Bring home all segments that nobody writes; give their recordings. Raises LibraryGoneError or OSError."""
     shelter = opened.shelter
     if shelter is None or not shelter.folder.is_dir():
         return frozenset()
@@ -71,16 +62,8 @@ def _bring(path: Path, recordings: Path) -> bool:
 
 
 def _copy(source: Path, target: Path) -> None:
-    beside = target.with_name(target.name + BESIDE)
-    with (
-        source.open("rb") as file,
-        os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as to,
-    ):
+    with source.open("rb") as file, replacing(target) as to:
         shutil.copyfileobj(file, to)
-        to.flush()
-        os.fsync(to.fileno())
-    beside.replace(target)
-    sync_folder(target.parent)
 
 
 def _goes_on(path: Path, target: Path) -> bool:

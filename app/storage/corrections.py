@@ -46,7 +46,8 @@ class Corrections:
     def of_patient(self, patient_id: UUID) -> tuple[Correction, ...]:
         """All that was corrected about a patient and the patient's sessions, latest first."""
         with self._unit.reading() as session:
-            return corrections_of_patient(session, patient_id)
+            own = select(SessionRow.id).where(SessionRow.patient_id == patient_id)
+            return _listed(session, or_(CorrectionRow.patient_id == patient_id, CorrectionRow.session_id.in_(own)))
 
     def of_session(self, session_id: UUID) -> tuple[Correction, ...]:
         """Latest first."""
@@ -54,15 +55,7 @@ class Corrections:
             return _listed(session, CorrectionRow.session_id == session_id)
 
     def undo(self, correction_id: UUID) -> None:
-        """Put back what a correction changed. Undoing that again does it once more.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            A value was changed again since: that change has to be taken back first.
-        LibraryError
-            It was undone already, or what it was about is gone.
-        """
+        """Put back what a correction changed, undone by itself; raises ChangedMeanwhileError, LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = session.get(CorrectionRow, correction_id)
             if row is None:
@@ -74,21 +67,10 @@ class Corrections:
 
 
 def unchanged(row: R, version: int) -> R:
-    """The row, as long as it has the version that somebody saw.
-
-    Raises
-    ------
-    ChangedMeanwhileError
-        It was changed since.
-    """
+    """Give the row if it has the version that was shown; raises ChangedMeanwhileError."""
     if row.version != version:
         raise changed_meanwhile()
     return row
-
-
-def corrections_of_patient(session: OrmSession, patient_id: UUID) -> tuple[Correction, ...]:
-    own = select(SessionRow.id).where(SessionRow.patient_id == patient_id)
-    return _listed(session, or_(CorrectionRow.patient_id == patient_id, CorrectionRow.session_id.in_(own)))
 
 
 def apply(
@@ -99,13 +81,7 @@ def apply(
     session_id: UUID | None = None,
     undoes: UUID | None = None,
 ) -> UUID | None:
-    """Make `changes`, and keep who made them; gives the correction's id. Nothing is done where nothing changes.
-
-    Raises
-    ------
-    ChangedMeanwhileError
-        A value is not the old one any more.
-    """
+    """Apply `changes` and give the correction's id, None if nothing changes; raises ChangedMeanwhileError."""
     if not changes:
         return None
     for change in changes:

@@ -6,8 +6,9 @@ from uuid import UUID
 
 from sqlalchemy import select
 
-from app.storage.database.models import CourseRow, SessionRow
-from app.storage.stored import LibraryError, Role
+from app.storage.database.models import CourseRow
+from app.storage.sessions import existing_session
+from app.storage.stored import Role
 from app.storage.unit_of_work import UnitOfWork
 from app.summary.course import Course, course_from_json, course_in_json
 
@@ -32,23 +33,12 @@ class Courses:
         return found
 
     def keep(self, session_id: UUID, key: str, course: Course) -> None:
-        """Put what was found in the place of what was there; whoever may look at a session may keep it.
-
-        Raises
-        ------
-        LibraryError
-            There is no such session.
-        """
+        """Replace a session's kept course, as any reader of the session may; raises LibraryError."""
         content = course_in_json(course)
         with self._unit.reading() as session:
             row = session.get(CourseRow, session_id)
             if row is not None and (row.key, row.content) == (key, content):
                 return
         with self._unit.writing(Role.VIEWER) as session:
-            if session.get(SessionRow, session_id) is None:
-                raise LibraryError("This session is no longer in the library", "Reload the list")
-            row = session.get(CourseRow, session_id)
-            if row is None:
-                session.add(CourseRow(session_id=session_id, key=key, content=content))
-            else:
-                row.key, row.content = key, content
+            existing_session(session, session_id)
+            session.merge(CourseRow(session_id=session_id, key=key, content=content))

@@ -41,13 +41,7 @@ class DataKey(Secret):
 
 
 def checked(data_key: KeyMaterial) -> KeyMaterial:
-    """The key itself.
-
-    Raises
-    ------
-    LibraryLockedError
-        It was wiped.
-    """
+    """Give the key; raises LibraryLockedError if it was wiped."""
     if len(data_key) != KEY_BYTES:
         raise LibraryLockedError("The library is locked", "Type the passphrase, then try again")
     return data_key

@@ -36,13 +36,7 @@ def derived_from(data_key: KeyMaterial | None) -> DerivedKeys:
 
 
 def derived_keys(session: OrmSession, data_key: KeyMaterial | None) -> DerivedKeys:
-    """Those of a library, as it keeps them.
-
-    Raises
-    ------
-    LibraryFaultError
-        They are damaged.
-    """
+    """Give the library's derived keys; raises LibraryFaultError if damaged."""
     row = session.get(SettingRow, SETTING) if data_key is not None else None
     if row is None:
         return derived_from(data_key)
@@ -60,11 +54,7 @@ def keep_derived_keys(session: OrmSession, kept: DerivedKeys, data_key: KeyMater
     """Keep them under a new data key."""
     nonce = secrets.token_bytes(NONCE_BYTES)
     content = nonce + _wrapping(data_key).encrypt(nonce, kept.audit + kept.pseudonyms, None)
-    value = base64.b64encode(content).decode()
-    if (row := session.get(SettingRow, SETTING)) is None:
-        session.add(SettingRow(name=SETTING, value=value))
-    else:
-        row.value = value
+    SettingRow.put(session, SETTING, base64.b64encode(content).decode())
 
 
 def _derived(data_key: KeyMaterial | None, info: bytes) -> bytes:

@@ -14,13 +14,7 @@ _log = logging.getLogger(__name__)
 
 
 def chosen_study(library: "Library") -> OwnFigures | None:
-    """The study that was chosen; None: the published figures hold, also where what is kept cannot be read.
-
-    Raises
-    ------
-    LibraryError
-        The database cannot be read.
-    """
+    """Give the chosen study; None (also if damaged): published figures hold. Raises LibraryError."""
     kept = library.settings.get(SETTING)
     try:
         return figures_from_json(kept) if kept is not None else None
@@ -30,13 +24,7 @@ def chosen_study(library: "Library") -> OwnFigures | None:
 
 
 def choose_study(library: "Library", own: OwnFigures | None) -> None:
-    """Judge by a study from now on; None: by the published figures. An administrator's decision, which is audited.
-
-    Raises
-    ------
-    LibraryError
-        The operator may not, or the database cannot be written.
-    """
+    """Judge by a study, None: the published figures; audited, administrators only; raises LibraryError."""
     library.settings.put(SETTING, figures_in_json(own) if own is not None else None)
 
 

@@ -67,27 +67,8 @@ def import_session(
     room: Room = ROOM,
     limits: Limits = NO_LIMITS,
 ) -> Imported:
-    """Take a session, as `read_session` gives it, into the library: to the patient of this code, or to a new one.
-
-    What is raised on the way leaves the session deleted, not half imported; a new patient stays.
-
-    Parameters
-    ----------
-    code
-        Of the patient, where it is another than the session's own or that has none.
-    limits
-        What the patient's body does not allow, which no folder can say.
-
-    Raises
-    ------
-    LibraryError
-        No code, a simulated session for a patient who is not, the database or the disk refuses.
-    FileRefusedError
-        A file of the session changed while it was read.
-    JournalRefusedError
-        There is too little room.
-    OSError
-        The folder of the recordings cannot be written.
+    """Import a session for the patient of `code`, else its own; on failure only a new patient stays.
+    Raises LibraryError, JournalRefusedError (no room), FileRefusedError (file changed meanwhile), OSError.
     """
     library = opened.library
     required = replace(session.patient, code=code or session.patient.code)
@@ -110,18 +91,8 @@ def import_session(
 
 
 def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: Decoders, report: Report) -> Session:
-    """A session of the library with its samples, as `read_session` would give it.
-
-    A recording whose keys were destroyed, or that is being made now, is not in it.
-
-    Raises
-    ------
-    JournalRefusedError
-        A recording's file is missing, damaged in its beginning, or another library's.
-    LibraryError
-        A recording needs a driver that is not among `decoders`.
-    OSError
-        A file cannot be read.
+    """Give a session with samples, without recordings that are destroyed or in progress.
+    Raises JournalRefusedError (missing, damaged, another library's), LibraryError (no decoder) or OSError.
     """
     required = [recording for recording in visit.recordings if recording.state in READ_BACK]
     recordings, findings = [], list(visit.details.findings)
@@ -136,10 +107,7 @@ def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: 
 def recording_with_samples(
     opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders
 ) -> tuple[Recording, tuple[Finding, ...]]:
-    """A recording with its samples, and what is odd about their files; errors as in `session_with_samples`.
-
-    A LibraryError, too, where the library is gone, and with it the files, or where a clinic's shared place is.
-    """
+    """Give a recording with samples and findings; raises as `session_with_samples`, or LibraryError if gone."""
     paths = [opened.journal_path(journal) for journal in recording.journals]
     for path in paths:
         if not path.exists():
@@ -157,19 +125,8 @@ def recording_with_samples(
 
 
 def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, decoders: Decoders, report: Report) -> None:
-    """Write one CSV file per sensor of a recording that no session knows, to be imported into the right one.
-
-    Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit gets an
-    entry before anything is written, and another one when all of it is.
-
-    Raises
-    ------
-    LibraryError
-        It needs a driver that is not among `decoders`, or the export cannot be noted.
-    JournalRefusedError
-        It is damaged in its beginning, or another library's.
-    OSError
-        The folder cannot be written.
+    """Write an orphan recording as one CSV file per sensor (sites unknown), audited before and after.
+    Raises LibraryError (no decoder, not noted), JournalRefusedError (damaged, not this library's), OSError.
     """
     decoded = decode(list(orphan.segments.values()), opened.data_key, decoders)
     _refuse_undecoded(orphan.belonging.details.name if orphan.belonging else orphan.recording_id.hex, decoded)
@@ -192,13 +149,7 @@ def was_exported(opened: OpenedLibrary, orphan: Interrupted) -> bool:
 
 
 def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
-    """See that all of it can be read.
-
-    Raises
-    ------
-    LibraryError
-        A driver is not known here.
-    """
+    """Raise LibraryError where a driver of the journal is not known here."""
     if decoded.undecoded:
         what = tr("{recording} was recorded with {driver}, which this version cannot read")
         reported = what.format(recording=name, driver=decoded.undecoded[0])
@@ -260,13 +211,7 @@ def _pieces(block: ImuBlock) -> Iterator[tuple[float, ImuBlock]]:
 
 
 def _refuse_incomplete(summary: JournalSummary) -> None:
-    """See that everything was written.
-
-    Raises
-    ------
-    LibraryError
-        The disk did not take all of it.
-    """
+    """Raise LibraryError where the disk did not take everything."""
     if summary.state is State.CLOSED and not summary.dropped_records and summary.reason == "stopped":
         return
     what, remedy = REPORTED[Trouble(summary.reason)] if summary.reason in list(Trouble) else REPORTED[Trouble.DISK_GONE]

@@ -5,26 +5,33 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
 
 BEYOND_ALL_BYTES = 1 << 40
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Write `content` beside `path`, sync it and rename it over `path`: a crash leaves the old file or the new one.
+    """Write beside `path`, sync and rename: a crash leaves the old or the new file; raises OSError."""
+    with replacing(path) as file:
+        file.write(content)
 
-    Raises
-    ------
-    OSError
-        The folder cannot be written, or the disk is full; the old file is untouched.
-    """
-    beside = path.with_name(path.name + ".new")
+
+@contextmanager
+def replacing(path: Path, beside: Path | None = None, mode: int = 0o600) -> Iterator[BinaryIO]:
+    """As `replace_file`, for what is written piece by piece; whatever is raised meanwhile leaves the old file."""
+    beside = beside or path.with_name(path.name + ".new")
     try:
-        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-            file.write(content)
+        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, mode), "wb") as file:
+            yield file
             file.flush()
             os.fsync(file.fileno())
         beside.replace(path)
-    except OSError:
+    except BaseException:
         beside.unlink(missing_ok=True)
         raise
     sync_folder(path.parent)
@@ -43,17 +50,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextmanager
 def held(path: Path) -> Iterator[None]:
-    """Be the one program that holds the file `path`, made if need be.
-
-    The operating system lets go of it when the program ends, however it ends.
-
-    Raises
-    ------
-    BlockingIOError
-        Another program holds it.
-    OSError
-        It cannot be made.
-    """
+    """Hold the file `path` alone, until the program ends at the latest; raises BlockingIOError or OSError."""
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
     try:
         hold(descriptor)
@@ -63,17 +60,9 @@ def held(path: Path) -> Iterator[None]:
 
 
 def hold(descriptor: int) -> None:
-    """Be the one who holds an open file, until it is closed; others can read it all the same.
-
-    Raises
-    ------
-    BlockingIOError
-        Somebody else holds it, be it in this program.
-    """
+    """Hold an open file alone until closed, still readable for others; raises BlockingIOError if it is held."""
     try:
         if sys.platform == "win32":
-            import msvcrt
-
             place = os.lseek(descriptor, 0, os.SEEK_CUR)
             os.lseek(descriptor, BEYOND_ALL_BYTES, os.SEEK_SET)  # what is locked there nobody can read
             try:
@@ -81,8 +70,6 @@ def hold(descriptor: int) -> None:
             finally:
                 os.lseek(descriptor, place, os.SEEK_SET)
         else:
-            import fcntl
-
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
         raise BlockingIOError(error.errno, "somebody else holds this file") from error

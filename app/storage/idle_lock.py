@@ -19,29 +19,25 @@ class IdleLock:
 
     def __init__(self, now_s: Callable[[], float], lock: Callable[[], None], after_s: float = LOCK_AFTER_S) -> None:
         self._now_s, self._lock, self._after_s = now_s, lock, after_s
-        self._is_locked = False
+        self.is_locked = False
         self.is_asked_for = False
         """Whether somebody asked for the lock, instead of nobody being there."""
         self._idle_s = 0.0
         self._seen_s = now_s()
-
-    @property
-    def is_locked(self) -> bool:
-        return self._is_locked
 
     def poll(self) -> None:
         """Lock if it is time."""
         now_s = self._now_s()
         self._idle_s += max(0.0, now_s - self._seen_s)
         self._seen_s = now_s
-        if self._idle_s >= self._after_s and not self._is_locked:
-            self._is_locked = True  # first: `lock` may let the timer poll again before it returns
+        if self._idle_s >= self._after_s and not self.is_locked:
+            self.is_locked = True  # first: `lock` may let the timer poll again before it returns
             self._lock()
 
     def lock_now(self) -> None:
         """Lock without waiting, as somebody who leaves the desk asks for it."""
-        if not self._is_locked:
-            self._is_locked = self.is_asked_for = True
+        if not self.is_locked:
+            self.is_locked = self.is_asked_for = True
             self._lock()
 
     def note_activity(self) -> None:
@@ -51,6 +47,6 @@ class IdleLock:
 
     def unlock(self) -> None:
         """The passphrase was right: start counting from zero."""
-        self._is_locked = self.is_asked_for = False
+        self.is_locked = self.is_asked_for = False
         self._idle_s = 0.0
         self._seen_s = self._now_s()

@@ -13,13 +13,7 @@ HEADERS_DUE = "journal_headers_due"  # the setting that states that headers stil
 
 
 def write_headers(database: Database, recordings: Path) -> None:
-    """Write into the journals' headers what the database has of them, where a change of the key left that to be done.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written; it is tried again at the next start.
-    """
+    """Write the database's keys into journal headers, as left by a key change; OSError: retried at next start."""
     with database.reading() as session:
         if session.get(SettingRow, HEADERS_DUE) is None:
             return

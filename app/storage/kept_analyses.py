@@ -30,10 +30,7 @@ FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may
 
 
 def bare(session: Session) -> Session:
-    """The session with all that an analysis reads, and without what is meant for people: names, notes, conditions.
-
-    Nor with the strides that were left out by hand: they are left out of what was found (`core.gait.chosen_strides`).
-    """
+    """Give what an analysis reads: no names, notes, conditions, left-out strides (`core.gait.chosen_strides`)."""
     patient, reported = session.patient, session.sensors
     return Session(
         recordings=tuple(
@@ -71,13 +68,7 @@ def is_same_question(one: Session, other: Session) -> bool:
 
 
 def find_analysis(results: Results, session_id: UUID, session: Session) -> Analysis | None:
-    """What `analyse(bare(session))` gave when it was last computed; None: not yet, or what was kept is damaged.
-
-    Raises
-    ------
-    LibraryError
-        The library cannot be read.
-    """
+    """Give what `analyse(bare(session))` gave, None if not kept or damaged; raises LibraryError."""
     kept = results.find(session_id, ResultKind.ANALYSIS, inputs_of(session))
     if kept is None or kept.format != FORMAT:
         return None

@@ -23,15 +23,7 @@ _log = logging.getLogger(__name__)
 
 
 def course_key(details: Session, stored: Sequence[StoredRecording]) -> str:
-    """SHA-256 of all that a course depends on but the samples.
-
-    Parameters
-    ----------
-    details
-        The session as it is evaluated; its samples are not looked at.
-    stored
-        Recordings of the library, those that are evaluated among them.
-    """
+    """Give the SHA-256 of all that a course depends on but the samples; `stored` includes the evaluated."""
     placements = {recording.details.name: recording.placement for recording in stored}
     return hashlib.sha256(
         json.dumps(

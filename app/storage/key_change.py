@@ -44,12 +44,8 @@ COPY_SHARE = 0.3  # of the progress; the journals take the rest
 class ChangedKey:
     """What came of a change.
 
-    Attributes
-    ----------
-    recovery_key
-        The text of a new recovery key, where the old one opens nothing any more; else empty.
-    left_out
-        Operators who need a new passphrase, because they have not logged in since slots have keys of their own.
+    `recovery_key`: the text of a new recovery key, where the old one opens nothing any more; else empty.
+    `left_out`: operators who need a new passphrase, because they have not logged in since slots have keys of their own.
     """
 
     data_key: DataKey
@@ -58,16 +54,9 @@ class ChangedKey:
 
 
 def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Report) -> ChangedKey:
-    """Give a library a new data key that the operators `staying` have and nobody else; `opened` is closed.
-
-    Raises
-    ------
-    KeyRefusedError
-        Somebody else is changing the keys, or nobody would have one.
-    LibraryError
-        See `refuse_change`; or another program has the library open, or there is too little room.
-    OSError
-        A file cannot be written; what it was before is still there.
+    """Give a library a new data key for the operators `staying` only; `opened` is closed.
+    Raises KeyRefusedError (changing already, nobody left), LibraryError (also as `refuse_change`), OSError;
+    the former state is then kept.
     """
     refuse_change(opened)
     old = opened.data_key
@@ -79,27 +68,14 @@ def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Repor
     with slots.held():
         sealed = slots.sealed_again(old, new, staying)
         _replace(opened.folder, old, new, sealed.content, report)
-    database = Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))
-    try:
+    with closing(Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))) as database:
         write_headers(database, opened.folder / RECORDINGS)
-    finally:
-        database.close()
     report(1.0, "")
     return ChangedKey(new, sealed.recovery_key, sealed.left_out)
 
 
 def refuse_change(opened: OpenedLibrary) -> None:
-    """See that nothing is under way which has the old key: only journals that are in the library get the new one.
-
-    Raises
-    ------
-    LibraryGoneError
-        The library is not there.
-    LibraryError
-        It has no key, or a recording goes on, was left over, or has not come home yet.
-    OSError
-        The folder of the recordings cannot be read.
-    """
+    """Raise LibraryError where the key must not change: no key, a recording that goes on, remains or is away."""
     if opened.shared is not None or opened.away_from is not None:
         raise LibraryError(
             "The key of a clinic's library cannot change while workstations share it",
@@ -178,8 +154,7 @@ def _copy(connection: "object", beside: Path, new: KeyMaterial, report: Report) 
 
 
 def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: Report) -> None:
-    database = Database(sqlite_engine(beside, new, creates=False))
-    try:
+    with closing(Database(sqlite_engine(beside, new, creates=False))) as database:
         with database.writing() as session:
             keep_derived_keys(session, derived_keys(session, old), new)
             session.add(SettingRow(name=HEADERS_DUE, value=True))
@@ -193,8 +168,6 @@ def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: 
                 report(share, "")
         if database.faults():
             raise LibraryError("The copy of the database is faulty", "Try again, or check the disk")
-    finally:
-        database.close()
     with beside.open("rb") as file:
         os.fsync(file.fileno())
 

@@ -9,15 +9,7 @@ from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
 
 
 def settle(folder: Path) -> None:
-    """Finish or take back a change of the key that was interrupted. To be called before the slots are read.
-
-    Raises
-    ------
-    KeyRefusedError
-        Somebody is changing the keys just now.
-    OSError
-        A file cannot be written.
-    """
+    """Finish or undo an interrupted key change, before slots are read; raises KeyRefusedError or OSError."""
     keys, new_keys, beside = folder / KEYS, folder / NEW_KEYS, folder / NEW_DATABASE
     if not (new_keys.exists() or beside.exists()):
         return

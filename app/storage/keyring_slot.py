@@ -25,13 +25,7 @@ def is_there_a_keyring() -> bool:
 
 
 def remember(slots: KeySlots, data_key: KeyMaterial, code: str) -> None:
-    """Let this machine's keyring open the library for an operator, in place of any that did before.
-
-    Raises
-    ------
-    KeyRefusedError
-        There is no keyring, it refuses, or there is no such operator.
-    """
+    """Let this machine's keyring open the library for an operator, replacing others; raises KeyRefusedError."""
     keyring = _keyring()
     if keyring is None:
         raise KeyRefusedError("This computer has no keyring", "Continue with the passphrase")
@@ -48,13 +42,7 @@ def remember(slots: KeySlots, data_key: KeyMaterial, code: str) -> None:
 
 
 def open_remembered(slots: KeySlots, code: str) -> DataKey | None:
-    """The data key; None when the passphrase is needed: nothing remembered, no keyring, locked, or another's secret.
-
-    Raises
-    ------
-    KeyRefusedError
-        The slots' file is damaged or not there.
-    """
+    """Give the data key, None where the passphrase is needed; raises KeyRefusedError for damaged slots."""
     slot, keyring = slots.keyring_slot(code), _keyring()
     if slot is None or keyring is None:
         return None
@@ -66,10 +54,7 @@ def open_remembered(slots: KeySlots, code: str) -> DataKey | None:
 
 
 def forget(slots: KeySlots, code: str) -> None:
-    """Let only the passphrase open the library for this operator.
-
-    A keyring that cannot be reached keeps its secret, which opens nothing any more but older copies of the slots.
-    """
+    """Let only the passphrase open the library; an unreachable keyring's secret opens only old slot copies."""
     slot, keyring = slots.keyring_slot(code), _keyring()
     slots.remove_keyring_slot(code)
     if slot is not None and keyring is not None:
@@ -80,7 +65,7 @@ def forget(slots: KeySlots, code: str) -> None:
 def _keyring() -> Any:
     """The system's keyring, None without a safe one."""
     try:
-        import keyring
+        import keyring  # an extra
 
         found = keyring.get_keyring()
         return found if found.priority >= SAFE_PRIORITY else None

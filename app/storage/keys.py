@@ -51,17 +51,12 @@ class KeyRefusedError(Exception):
 class SealedAgain:
     """What the slots' file is to hold once the data key is changed.
 
-    Attributes
-    ----------
-    content
-        The file.
-    recovery_key
-        The text of a new recovery key, where the old one could not be kept; else empty.
-    left_out
-        Operators who need a new passphrase: their slots are of the first format, or marked by nobody who had the key.
+    `recovery_key`: the text of a new recovery key, where the old one could not be kept; else empty.
+    `left_out`: operators who need a new passphrase: their slots are of the first format, or marked by nobody who had
+    the key.
     """
 
-    content: dict[str, object] = field(repr=False)
+    content: dict[str, object] = field(repr=False)  # the file
     recovery_key: str = field(repr=False)
     left_out: tuple[str, ...]
 
@@ -86,13 +81,7 @@ class KeySlots:
         return tuple(code for code in self._read() if _is_operators(code))
 
     def create(self, code: str, passphrase: str, known: Iterable[str] = ()) -> tuple[DataKey, str]:
-        """Make the first operator's slot and the recovery key's; returns the data key and the recovery key's text.
-
-        Raises
-        ------
-        KeyRefusedError
-            There are slots already, or the passphrase is too short or weak; `known` are names that it must not rest on.
-        """
+        """Make the first operator's and the recovery key's slots; give key and text; raises KeyRefusedError."""
         if self.exists:
             raise KeyRefusedError("This library already has its keys", "Log in, or use the recovery key")
         data_key, text = DataKey(os.urandom(KEY_BYTES)), new_recovery_key()
@@ -102,13 +91,7 @@ class KeySlots:
         return data_key, text
 
     def open(self, code: str, passphrase: str) -> DataKey:
-        """The data key.
-
-        Raises
-        ------
-        KeyRefusedError
-            No such operator, or not this passphrase; the two are not distinguished.
-        """
+        """Give the data key; raises KeyRefusedError, the same for a wrong operator as for a wrong passphrase."""
         slot = self._read().get(_normal(code))
         data_key = self._opened(slot, _secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
         if data_key is None:
@@ -118,13 +101,7 @@ class KeySlots:
         return data_key
 
     def open_with_recovery_key(self, text: str) -> DataKey:
-        """The data key.
-
-        Raises
-        ------
-        KeyRefusedError
-            Mistyped, or another library's.
-        """
+        """Give the data key; raises KeyRefusedError where the text is mistyped or another library's."""
         secret = _recovery_bytes(text)
         slot = self._read().get(RECOVERY)
         data_key = self._opened(slot, secret) if slot is not None else None
@@ -137,13 +114,7 @@ class KeySlots:
     def add(
         self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = (), *, is_given: bool = False
     ) -> None:
-        """Give an operator a slot; `is_given`: somebody else chose the passphrase, so it is marked as to be changed.
-
-        Raises
-        ------
-        KeyRefusedError
-            The code is taken, or the passphrase is too short or weak.
-        """
+        """Give an operator a slot; `is_given`: to be changed, since another chose it; raises KeyRefusedError."""
         with self._changing() as slots:
             if _checked_code(code) in slots:
                 raise KeyRefusedError(
@@ -158,14 +129,7 @@ class KeySlots:
         return _normal(code) in self._given()
 
     def set_passphrase(self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
-        """Give an operator a new passphrase; until the file is replaced the old one opens, from then on the new one.
-
-        Raises
-        ------
-        KeyRefusedError
-            No such operator, or the passphrase is too short or weak, or the one that somebody else chose; `known` are
-            names that it must not rest on.
-        """
+        """Give an operator a new passphrase, not like `known` or the one given; raises KeyRefusedError."""
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
@@ -178,13 +142,7 @@ class KeySlots:
             self._write({**slots, own.code: own}, given=self._given() - {own.code})
 
     def remove(self, code: str) -> None:
-        """Take an operator's slot away, and that of their keyring.
-
-        Raises
-        ------
-        KeyRefusedError
-            It is the last one, or the recovery key's.
-        """
+        """Remove an operator's slots; raises KeyRefusedError for the last one or the recovery key's."""
         with self._changing() as slots:
             slots.pop(_checked_code(code), None)
             slots.pop(KEYRING + _normal(code), None)
@@ -206,22 +164,13 @@ class KeySlots:
         return bool(self._content().get(CONFIRMED, True))
 
     def confirm_recovery_key(self, text: str) -> None:
-        """Take the recovery key as it was typed back from its sheet.
-
-        Raises
-        ------
-        KeyRefusedError
-            It is not the one that opens this library.
-        """
+        """Confirm the recovery key as typed back from its sheet; raises KeyRefusedError for another one."""
         self.open_with_recovery_key(text).wipe()
         with self._changing() as slots:
             self._write(slots, is_confirmed=True)
 
     def sealed_again(self, old: KeyMaterial, new: KeyMaterial, staying: Iterable[str]) -> SealedAgain:
-        """What the file is to hold when `new` is the data key of the operators `staying`, and of nobody else.
-
-        Their passphrases, keyrings and the recovery key go on opening the library, under the new key.
-        """
+        """Give the file for data key `new` of `staying` only; their passphrases and recovery key still open."""
         slots, codes = self._read(), {_normal(code) for code in staying}
         kept = {code: slot.sealing(new) for code, slot in slots.items() if slot.is_of(old) and _person(code) in codes}
         is_confirmed, text = self.is_recovery_key_confirmed, ""
@@ -240,13 +189,7 @@ class KeySlots:
         return self._read().get(KEYRING + _normal(code))
 
     def set_keyring_slot(self, data_key: KeyMaterial, code: str, secret: bytes) -> Slot:
-        """Let what an operator's keyring holds open the library, in place of what it held before.
-
-        Raises
-        ------
-        KeyRefusedError
-            No such operator.
-        """
+        """Let the secret in an operator's keyring open the library, replacing any; raises KeyRefusedError."""
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
@@ -273,13 +216,7 @@ class KeySlots:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Let nobody else change the slots.
-
-        Raises
-        ------
-        KeyRefusedError
-            Somebody else is changing them.
-        """
+        """Hold the slots against changes by others; raises KeyRefusedError where another is changing them."""
         with self._changing():
             yield
 

@@ -43,10 +43,7 @@ def own_folder() -> Path:
 
 
 def default_folder() -> Path:
-    """Where the library is that opens by itself: the user's own, or beside it that of a station of the clinic.
-
-    It is a station's where the environment names the clinic's server; the own folder may have become one before.
-    """
+    """Give the folder of the library that opens by itself: the user's, or a station's where a server is named."""
     own = own_folder()
     is_clinic = os.environ.get(DATABASE_VARIABLE) and not (own / STATION).exists()
     return own.with_name("clinic") if is_clinic else own

@@ -2,7 +2,6 @@
 
 This is what the application calls. Plain values go in and out (`app.storage.stored`), trouble is a `LibraryError` that
 can be shown as it is. Every call may come from any thread and may wait for the disk, so the screen's thread makes none.
-The database is loaded when a library is opened, not when this module is.
 """
 
 import datetime
@@ -12,16 +11,33 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
+from sqlalchemy import select
+
+from app.storage.audit import Audit, about, append
+from app.storage.clinic.server_state import refuse_closed
+from app.storage.clinic.station import Station, station_of
+from app.storage.corrections import Corrections
+from app.storage.courses import Courses
 from app.storage.data_key import KeyMaterial
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.models import OperatorRow, folded
+from app.storage.database.schema import bring_up_to_date
+from app.storage.database.values import operator_of
+from app.storage.database.write_ahead_log import is_end_lost
+from app.storage.derived_keys import derived_keys
+from app.storage.journal_headers import write_headers
 from app.storage.layout import DATABASE, MOVING
+from app.storage.operators import Operators, OperatorSettings, add_operator
+from app.storage.patients import Patients
+from app.storage.recordings import Recordings
+from app.storage.results import Results
+from app.storage.root import LibraryRoot, root_of
+from app.storage.sessions import Sessions
+from app.storage.shared_edits import SharedEdits
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
-
-if TYPE_CHECKING:
-    from app.storage.clinic.station import Station
-    from app.storage.database.engine import Database
-    from app.storage.root import LibraryRoot
+from app.storage.unit_of_work import UnitOfWork
 
 DEMONSTRATOR = Operator("demo", "Demonstration", Role.ADMINISTRATOR)
 
@@ -40,25 +56,12 @@ class Library:
 
     def __init__(
         self,
-        database: "Database",
+        database: Database,
         data_key: KeyMaterial | None,
         now: Callable[[], datetime.datetime] = now_utc,
         is_end_lost: bool = False,
-        station: "Station | None" = None,
+        station: Station | None = None,
     ) -> None:
-        from app.storage.audit import Audit
-        from app.storage.corrections import Corrections
-        from app.storage.courses import Courses
-        from app.storage.database.schema import bring_up_to_date
-        from app.storage.derived_keys import derived_keys
-        from app.storage.operators import Operators, OperatorSettings
-        from app.storage.patients import Patients
-        from app.storage.recordings import Recordings
-        from app.storage.results import Results
-        from app.storage.sessions import Sessions
-        from app.storage.shared_edits import SharedEdits
-        from app.storage.unit_of_work import UnitOfWork
-
         self.is_end_lost, self.station = is_end_lost, station
         self.root: LibraryRoot | None = None  # of a library in a folder
         self.is_to_be_moved = False
@@ -89,15 +92,7 @@ class Library:
         operator: Operator,
         now: Callable[[], datetime.datetime] = now_utc,
     ) -> Self:
-        """Make an empty library in `folder` and log `operator` in, who becomes its first administrator.
-
-        One that was interrupted before is finished.
-
-        Raises
-        ------
-        LibraryError
-            There is a library already, or the folder cannot be written.
-        """
+        """Make an empty library, or finish making it, with `operator` as administrator; raises LibraryError."""
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
@@ -120,19 +115,9 @@ class Library:
         *,
         is_to_be_moved: bool = False,
     ) -> Self:
-        """Open the library in `folder`. No `data_key`: it is a demonstration, and not encrypted.
-
-        `is_to_be_moved`: also one that is on its way to a clinic's server or back, to go on with that.
-
-        Raises
-        ------
-        LibraryError
-            There is none, it does not open with this key, it is damaged, or a later version has written it.
+        """Open the library, a demonstration without `data_key`; `is_to_be_moved`: also one on its way.
+        Raises LibraryError where there is none, the key is wrong, it is damaged or of a later version.
         """
-        from app.storage.clinic.server_state import refuse_closed
-        from app.storage.clinic.station import station_of
-        from app.storage.database.write_ahead_log import is_end_lost
-
         try:
             station = station_of(folder)
             if station is None and not (folder / DATABASE).exists():
@@ -179,18 +164,7 @@ class Library:
         return self._unit.is_demonstration
 
     def begin(self, operator: Operator) -> Operator:
-        """Log the first operator of an empty library in, as its administrator.
-
-        Raises
-        ------
-        NotAllowedError
-            It has operators already.
-        """
-        from sqlalchemy import select
-
-        from app.storage.database.models import OperatorRow, folded
-        from app.storage.operators import add_operator
-
+        """Log in the first operator as administrator; raises NotAllowedError where there are operators."""
         first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
         with self.database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
@@ -200,18 +174,7 @@ class Library:
         return self.log_in(first.code)
 
     def log_in(self, code: str, failed_before: int = 0) -> Operator:
-        """Let the operator work whose key slot was opened; `failed_before` counts the wrong passphrases before.
-
-        Raises
-        ------
-        NotAllowedError
-            This library does not know the operator, or no longer.
-        """
-        from app.storage.audit import about, append
-        from app.storage.clinic.server_state import refuse_closed
-        from app.storage.database.models import OperatorRow, folded
-        from app.storage.database.values import operator_of
-
+        """Log in the operator of the opened slot; `failed_before`: wrong passphrases; raises NotAllowedError."""
         with self.database.writing() as session:
             if self.station is not None and not self.is_to_be_moved:
                 refuse_closed(session)
@@ -236,27 +199,13 @@ class Library:
         return self.database.faults()
 
     def take_back(self) -> None:
-        """Go on with the library in the folder that is there now, which is another than was opened, and its copy.
-
-        Raises
-        ------
-        OSError
-            The folder cannot be read.
-        """
+        """Go on with the copy of the library that is now in the folder; raises OSError."""
         if self.root is not None:
             self.root.take()
-            self.database.reconnect()
+            self.database.close()
 
     def _take_root(self, folder: Path) -> None:
-        """Know the folder again, and from now on write nowhere else.
-
-        Raises
-        ------
-        LibraryError
-            It cannot be written.
-        """
-        from app.storage.root import root_of
-
+        """Identify the folder again and from now on write nowhere else; raises LibraryError."""
         try:
             self.root = root_of(folder, self.database)
         except OSError as error:
@@ -268,15 +217,7 @@ class Library:
         self.database.close()
 
     def write_journal_headers(self, recordings: Path) -> None:
-        """Finish what a change of the data key left to be done.
-
-        Raises
-        ------
-        OSError
-            A file cannot be written.
-        """
-        from app.storage.journal_headers import write_headers
-
+        """Finish what a change of the data key left to be done; raises OSError."""
         write_headers(self.database, recordings)
 
     def close(self) -> None:
@@ -292,7 +233,5 @@ class Library:
         self.close()
 
 
-def _database(folder: Path, data_key: KeyMaterial | None, creates: bool) -> "Database":
-    from app.storage.database.engine import Database, sqlite_engine
-
+def _database(folder: Path, data_key: KeyMaterial | None, creates: bool) -> Database:
     return Database(sqlite_engine(folder / DATABASE, data_key, creates=creates))

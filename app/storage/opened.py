@@ -46,21 +46,18 @@ class OpenedLibrary:
         return self.folder / RECORDINGS
 
     @property
+    def slots(self) -> KeySlots:
+        """What opens it, as `slots_of` gives it."""
+        return slots_of(self.folder)
+
+    @property
     def keys_folder(self) -> Path:
         """Where the slots are that open it: what a station works with without its server has the station's."""
         return self.folder if self.away_from is None else self.folder.parent
 
     def journal_path(self, journal: StoredJournal) -> Path:
-        """Where a journal can be read; one of another station is fetched first. It need not be there.
-
-        Raises
-        ------
-        JournalRefusedError
-            It is still at the station that made it.
-        LibraryError
-            The clinic's shared place does not answer.
-        OSError
-            This computer's disk does not take it.
+        """Give where a journal can be read, another station's fetched first; the path need not exist.
+        Raises JournalRefusedError (still at its station), LibraryError (no answer) or OSError.
         """
         path = self.recordings / journal.file
         return path if self.shared is None or path.exists() else self.shared.path(journal)
@@ -77,13 +74,7 @@ class OpenedLibrary:
         return self.library.root is None or self.library.root.is_there()
 
     def refuse_gone(self) -> None:
-        """See that the folder is where it was opened, before what is missing in it is reported as missing.
-
-        Raises
-        ------
-        LibraryGoneError
-            It is not, or it is another library's.
-        """
+        """Raise LibraryGoneError where the folder is not in place, before its files are reported missing."""
         if self.library.root is not None:
             self.library.root.refuse_gone()
 
@@ -97,17 +88,7 @@ class OpenedLibrary:
 
 
 def slots_of(folder: Path) -> KeySlots:
-    """The slots of the library in `folder`; a change of its key that was interrupted is finished or taken back.
-
-    Raises
-    ------
-    KeyRefusedError
-        The key is being changed just now.
-    LibraryError
-        It is a clinic's station, and its file is damaged.
-    OSError
-        A file cannot be written.
-    """
+    """Give the folder's slots, ending an interrupted key change; raises KeyRefusedError or LibraryError."""
     station = station_of(folder)
     if station is not None:
         return SharedKeySlots(folder / KEYS, station.database_once())
@@ -116,17 +97,7 @@ def slots_of(folder: Path) -> KeySlots:
 
 
 def open_library(folder: Path, passphrase: str, code: str = "", *, is_to_be_moved: bool = False) -> OpenedLibrary:
-    """Open the library in `folder` for the operator with this code; without one, for the only operator there is.
-
-    `is_to_be_moved`: see `Library.open`.
-
-    Raises
-    ------
-    KeyRefusedError
-        The passphrase or the code is wrong, or there are several operators and no code.
-    LibraryError
-        There is no library, or it does not open.
-    """
+    """Open the library for an operator, by default the only one; raises KeyRefusedError or LibraryError."""
     slots = slots_of(folder)
     if not slots.exists:
         raise LibraryError(
@@ -140,13 +111,7 @@ def open_library(folder: Path, passphrase: str, code: str = "", *, is_to_be_move
 
 
 def logged_in(folder: Path, data_key: DataKey, code: str, *, is_to_be_moved: bool = False) -> OpenedLibrary:
-    """Open the library in `folder` with its key, for an operator; `is_to_be_moved`: see `Library.open`.
-
-    Raises
-    ------
-    LibraryError
-        It does not open, or nobody with this code works there.
-    """
+    """Open the library with its key; `is_to_be_moved`: see `Library.open`; raises LibraryError."""
     library = Library.open(folder, data_key, is_to_be_moved=is_to_be_moved)
     try:
         library.log_in(code)
@@ -169,17 +134,7 @@ def _shared_journals(library: Library, folder: Path, data_key: DataKey) -> Share
 
 
 def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[OpenedLibrary, str]:
-    """Make a library in `folder`, which is empty or not there, and its recovery key, to be printed and typed back.
-
-    The folder is made beside its place and renamed: after a crash there is a whole library or none.
-
-    Raises
-    ------
-    KeyRefusedError
-        The code or the passphrase cannot be taken.
-    LibraryError
-        Something is in the folder, or it cannot be written.
-    """
+    """Make a library, whole or not at all, and its recovery key; raises KeyRefusedError or LibraryError."""
     with made_beside(folder) as beside:
         data_key, recovery_key = KeySlots(beside / KEYS).create(operator.code, passphrase, (operator.name,))
         Library.create(beside, data_key, operator).close()
@@ -188,13 +143,7 @@ def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[O
 
 @contextmanager
 def made_beside(folder: Path) -> Iterator[Path]:
-    """An empty folder, its owner's alone, that takes the place of `folder` when all is done, and else goes.
-
-    Raises
-    ------
-    LibraryError
-        There is something in `folder` already, or its place cannot be written.
-    """
+    """Yield an owner-only folder that replaces an empty `folder` at the end or vanishes; raises LibraryError."""
     folder = folder.resolve()
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
@@ -231,15 +180,7 @@ def _remove_unfinished(folder: Path) -> None:
 
 @contextmanager
 def held_alone(folder: Path) -> Iterator[None]:
-    """Be the one program that records into the library in `folder`; its open recordings are then left-overs.
-
-    The operating system lets go of it when the program ends, however it ends.
-
-    Raises
-    ------
-    LibraryError
-        Another program holds it.
-    """
+    """Be the one program recording here, so open recordings are left-overs; raises LibraryError if taken."""
     try:
         with held(folder / IN_USE):
             _remove_unfinished(folder)

@@ -25,13 +25,7 @@ class Operators:
             return tuple(operator_of(row) for row in session.scalars(select(OperatorRow).order_by(OperatorRow.code)))
 
     def add(self, operator: Operator) -> Operator:
-        """Let somebody work here.
-
-        Raises
-        ------
-        LibraryError
-            The code is taken.
-        """
+        """Add an operator; raises LibraryError where the code is taken."""
         with self._unit.writing(Role.ADMINISTRATOR) as session:
             if session.get(OperatorRow, folded(operator.code)) is not None:
                 raise LibraryError("Another user has this code", "Choose another code")
@@ -39,15 +33,7 @@ class Operators:
             return operator_of(row)
 
     def change(self, operator: Operator) -> Operator:
-        """Give an operator another name or role, or let them work here no longer.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            `operator.version` is not what the library holds any more.
-        LibraryError
-            Nobody would be administrator any more.
-        """
+        """Change an operator's name, role or access; ChangedMeanwhileError, LibraryError for the last admin."""
         with self._unit.writing(Role.ADMINISTRATOR) as session:
             row = session.get(OperatorRow, folded(operator.code))
             if row is None or row.version != operator.version:
@@ -77,16 +63,11 @@ class OperatorSettings:
 
     def get(self, name: str, default: Any = None) -> Any:
         with self._unit.reading() as session:
-            row = session.get(SettingRow, name)
-            return default if row is None else row.value
+            return SettingRow.of(session, name, default)
 
     def put(self, name: str, value: Any) -> None:
         with self._unit.writing(Role.ADMINISTRATOR) as session:
-            row = session.get(SettingRow, name)
-            if row is None:
-                session.add(SettingRow(name=name, value=value))
-            else:
-                row.value = value
+            SettingRow.put(session, name, value)
             note(self._unit, session, Action.EDIT, about("setting", name))
 
 

@@ -7,17 +7,15 @@ from uuid import UUID
 from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session as OrmSession
 
-from app.storage.audit import about, entry_of, note
-from app.storage.corrections import apply, corrections_of_patient, differences, unchanged
+from app.storage.audit import about, note
+from app.storage.corrections import apply, differences, unchanged
 from app.storage.database.engine import changed_meanwhile
-from app.storage.database.models import AuditRow, PatientRow, RecordingRow, ResultRow, SessionRow, folded
+from app.storage.database.models import AuditRow, PatientRow, RecordingRow, SessionRow, folded
 from app.storage.database.values import (
     patient_in_row,
     reported_patient,
     stored_patient,
     stored_patients,
-    stored_result,
-    stored_session,
 )
 from app.storage.edited_fields import PATIENT_CORRECTABLE
 from app.storage.sessions import refuse_early
@@ -25,7 +23,6 @@ from app.storage.stored import (
     Action,
     Change,
     LibraryError,
-    PatientFile,
     RecordingState,
     Role,
     StoredPatient,
@@ -47,13 +44,7 @@ class Patients:
         self._unit = unit
 
     def create(self, reported: Patient) -> StoredPatient:
-        """Add a patient.
-
-        Raises
-        ------
-        LibraryError
-            The code is empty or another patient's, or a value is out of range.
-        """
+        """Add a patient; raises LibraryError: code empty or taken, or a value out of range."""
         with self._unit.writing(Role.CLINICIAN) as session:
             reported = _checked(reported)
             _refuse_taken(session, reported.code)
@@ -64,13 +55,7 @@ class Patients:
             return stored_patient(session, row)
 
     def get(self, patient_id: UUID) -> StoredPatient:
-        """A patient who may be deleted, but not destroyed.
-
-        Raises
-        ------
-        LibraryError
-            There is no such patient.
-        """
+        """Give a patient, deleted or not; raises LibraryError where there is none, or destroyed."""
         with self._unit.reading() as session:
             return stored_patient(session, existing_patient(session, patient_id))
 
@@ -94,15 +79,7 @@ class Patients:
         return tuple(sorted(found, key=lambda patient: (patient.last_session, str(patient.id)), reverse=True))
 
     def change(self, patient: StoredPatient, reported: Patient) -> StoredPatient:
-        """Correct what was entered about a patient; kept in the history, and undone from there.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            `patient` is not what the library holds any more.
-        LibraryError
-            As in `create`.
-        """
+        """Correct a patient's data, undoable; raises ChangedMeanwhileError, or LibraryError as `create`."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = _current(session, patient)
             apply(self._unit, session, patient_changes(session, row, reported), patient.id)
@@ -110,17 +87,7 @@ class Patients:
             return stored_patient(session, row)
 
     def merge(self, kept: StoredPatient, double: StoredPatient) -> StoredPatient:
-        """Give `kept` all sessions and goals of `double`, and what only `double` contains; it is then not listed.
-
-        One correction of `kept`, undone as any other.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            One of them is not what the library holds any more.
-        LibraryError
-            They are the same, or one was deleted.
-        """
+        """Move all of `double` to `kept`, one undoable correction; raises ChangedMeanwhileError, LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row, other = _current(session, kept), _current(session, double)
             if row is other or row.deleted_at or other.deleted_at:
@@ -141,37 +108,19 @@ class Patients:
             return stored_patient(session, row)
 
     def what_goes(self, patient_id: UUID) -> WhatGoes:
-        """What `delete` takes out of sight, and who works with it, for somebody who may delete.
-
-        Raises
-        ------
-        LibraryError
-            There is no such patient, or the operator may not delete.
-        """
+        """Give what `delete` would hide and who works with it; raises LibraryError, also if not allowed to."""
         with self._unit.writing(Role.CLINICIAN) as session:
             return self._what_goes(session, existing_patient(session, patient_id))
 
     def delete(self, patient: StoredPatient, agreed: WhatGoes | None = None) -> StoredPatient:
-        """Take a patient and all sessions out of sight; they can be restored for 30 days.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            `patient` or what was `agreed` is not what the library holds any more.
-        """
+        """Hide a patient and all sessions, restorable for 30 days; raises ChangedMeanwhileError."""
         return self._set_deleted(patient, self._unit.now(), Action.DELETE, agreed)
 
     def restore(self, patient: StoredPatient) -> StoredPatient:
         return self._set_deleted(patient, None, Action.EDIT)
 
     def destroy(self, patient_id: UUID) -> None:
-        """Remove a patient for good, with all sessions and doubles. Their journals' keys have to be destroyed first.
-
-        Raises
-        ------
-        LibraryError
-            The patient was not deleted, or less than 30 days ago.
-        """
+        """Remove a patient for good, after all journals' keys; LibraryError if deleted under 30 days ago."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_patient(session, patient_id)
             refuse_early(row.deleted_at, self._unit.now())
@@ -181,34 +130,6 @@ class Patients:
             session.execute(delete(PatientRow).where(PatientRow.merged_into_id == row.id))
             session.execute(delete(PatientRow).where(PatientRow.id == row.id))
             note(self._unit, session, Action.DELETE, about("patient", patient_id), is_final=True)
-
-    def everything(self, patient_id: UUID) -> PatientFile:
-        """All that the library holds of one patient, for an export; it is noted as one.
-
-        Raises
-        ------
-        LibraryError
-            There is no such patient, or the export cannot be noted.
-        """
-        with self._unit.writing(Role.VIEWER) as session:
-            patient = stored_patient(session, existing_patient(session, patient_id))
-            note(self._unit, session, Action.EXPORT, about("patient", patient_id), is_everything=True)
-            rows = session.scalars(
-                select(SessionRow).where(SessionRow.patient_id == patient_id).order_by(SessionRow.started)
-            )
-            sessions = tuple(stored_session(row) for row in rows)
-            ids = [visit.id for visit in sessions]
-            results = session.scalars(select(ResultRow).where(ResultRow.session_id.in_(ids)).order_by(ResultRow.id))
-            subjects = [about("patient", patient_id), *(about("session", visit) for visit in ids)]
-            subjects += [about("recording", recording.id) for visit in sessions for recording in visit.recordings]
-            entries = session.scalars(select(AuditRow).where(AuditRow.subject.in_(subjects)).order_by(AuditRow.number))
-            return PatientFile(
-                patient,
-                sessions,
-                corrections_of_patient(session, patient_id),
-                tuple(stored_result(row) for row in results),
-                tuple(entry_of(row) for row in entries),
-            )
 
     def _what_goes(self, session: OrmSession, row: PatientRow) -> WhatGoes:
         visits = [

@@ -15,6 +15,7 @@ from app.storage.database.ids import uuid7
 from app.storage.database.models import AuditRow, JournalRow, PatientRow, RecordingRow, SessionRow
 from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
 from app.storage.edited_fields import RECORDING_CORRECTABLE
+from app.storage.sessions import existing_session
 from app.storage.stored import (
     Action,
     Change,
@@ -51,26 +52,12 @@ class Recordings:
         is_decided: bool = True,
         began_at: datetime.datetime | None = None,
     ) -> StoredRecording:
-        """Add a recording that is open, worn as the session's latest placement states.
-
-        Parameters
-        ----------
-        recording_id
-            That of a journal which nobody here knows of.
-        is_decided
-            False: somebody is to be asked whether it is kept.
-        began_at
-            Of one that was made earlier: it comes after those that were begun before it. None: it is the last.
-
-        Raises
-        ------
-        LibraryError
-            There is no such session, it has a recording of this name, or `is_simulated` and its patient is not.
+        """Add an open recording, worn as the latest placement; `recording_id`: of an unknown journal.
+        `is_decided` False: whether it is kept is to be asked; `began_at`: its place in order, None: last.
+        Raises LibraryError (no session, name taken, simulated for a patient who is not).
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            visit = session.get(SessionRow, session_id)
-            if visit is None:
-                raise LibraryError("This session is no longer in the library", "Reload the list")
+            visit = existing_session(session, session_id)
             _refuse_taken(visit, reported.name)
             row = RecordingRow(
                 id=recording_id or uuid7(),
@@ -93,13 +80,7 @@ class Recordings:
             return stored_recording(row)
 
     def add_journal(self, recording_id: UUID, journal: StoredJournal) -> None:
-        """Say in which file the next segment is, and by which key it is sealed.
-
-        Raises
-        ------
-        LibraryError
-            There is no such recording, or it has this segment.
-        """
+        """Register the file and sealing key of the next segment; raises LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if any(other.segment == journal.segment for other in row.journals):
@@ -107,13 +88,7 @@ class Recordings:
             row.journals.append(JournalRow(**asdict(journal)))
 
     def close(self, recording_id: UUID, state: RecordingState, sha256: Mapping[int, str]) -> StoredRecording:
-        """End a recording: closed with a footer, or recovered after a crash. `sha256` of each segment's file.
-
-        Raises
-        ------
-        LibraryError
-            There is no such recording, or a segment is missing.
-        """
+        """End a recording, closed or recovered, with the `sha256` of each segment's file; raises LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if {journal.segment for journal in row.journals} != set(sha256):
@@ -126,13 +101,7 @@ class Recordings:
             return stored_recording(row)
 
     def withdraw(self, recording_id: UUID) -> None:
-        """Take back a recording that did not begin, so that its name is free again.
-
-        Raises
-        ------
-        LibraryError
-            There is no such recording, or it has journals.
-        """
+        """Take back a recording that did not begin, freeing its name; LibraryError where it has journals."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if row.journals:
@@ -141,13 +110,7 @@ class Recordings:
             note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def discard(self, recording_id: UUID) -> None:
-        """Forget a recording's keys, once those in its files are destroyed: nothing opens it any more.
-
-        Raises
-        ------
-        LibraryError
-            There is no such recording.
-        """
+        """Forget a recording's keys, after those in its files: nothing opens it any more; raises LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             for journal in row.journals:
@@ -156,15 +119,7 @@ class Recordings:
             note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def change(self, recording: StoredRecording, reported: Recording) -> StoredRecording:
-        """Correct what was entered about a recording: condition, kept, strides left out etc.; undone from the history.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            `recording` is not what the library holds any more.
-        LibraryError
-            Another recording of the session has this name.
-        """
+        """Correct a recording's data, undoable; raises ChangedMeanwhileError, LibraryError (name taken)."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             visit = session.get_one(SessionRow, row.session_id)
@@ -173,13 +128,7 @@ class Recordings:
             return stored_recording(row)
 
     def decide(self, recording: StoredRecording, is_kept: bool) -> StoredRecording:
-        """Take the answer whether a recording is kept; of what was recovered after a crash, note who gave it.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            `recording` is not what the library holds any more.
-        """
+        """Store whether a recording is kept and, after a crash, who decided; raises ChangedMeanwhileError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             decide_row(self._unit, session, session.get_one(SessionRow, row.session_id), row, is_kept)
@@ -214,13 +163,7 @@ class Recordings:
         return {recording_id: frozenset(own) for recording_id, own in segments.items()}
 
     def note_kept(self, recording_id: UUID, segment: int, kept_as: str) -> None:
-        """Say under which name the clinic's shared place has a segment.
-
-        Raises
-        ------
-        LibraryError
-            There is no such recording.
-        """
+        """Store a segment's name in the clinic's shared place; raises LibraryError."""
         with self._unit.writing(Role.VIEWER) as session:  # whoever is logged in when it is handed over
             row = next(
                 (one for one in existing_recording(session, recording_id).journals if one.segment == segment), None
@@ -263,10 +206,7 @@ class Recordings:
             return frozenset(journal.file for journal in session.scalars(required))
 
     def undecided(self) -> tuple[UndecidedWalk, ...]:
-        """Walks of which nobody has stated whether they are kept: recovered, or closed here before it was stated.
-
-        Of no deleted patient, in order of time.
-        """
+        """Give walks neither kept nor discarded (recovered, closed early), in time order, none of the deleted."""
         is_recovered = and_(RecordingRow.state == RecordingState.RECOVERED, RecordingRow.judged_by == "")
         is_closed = and_(
             RecordingRow.state == RecordingState.CLOSED,
@@ -330,13 +270,7 @@ def decide_row(unit: UnitOfWork, session: OrmSession, visit: SessionRow, row: Re
 
 
 def current_recording(session: OrmSession, recording: StoredRecording) -> RecordingRow:
-    """The row, as long as it matches `recording`.
-
-    Raises
-    ------
-    ChangedMeanwhileError
-        It was changed since.
-    """
+    """Give the row if it matches `recording`; raises ChangedMeanwhileError."""
     return unchanged(existing_recording(session, recording.id), recording.version)
 
 

@@ -43,27 +43,15 @@ FIRST_RECORDS = 100  # among which is the mark that states whose a recording is
 class Interrupted:
     """A recording that nobody stopped, as its files' beginnings and ends show.
 
-    Attributes
-    ----------
-    stored
-        Its row; None: an orphan.
-    segments
-        Its journals, by segment.
-    began_at
-        None: it was ended before a journal was begun.
-    recorded_s
-        How much there is, up to the last record that was written.
-    problem, remedy
-        What keeps it from being recovered, and what to do; empty where nothing does.
-    belonging
-        Of an orphan: which session it was begun in, and what was noted about it; None where that is not known.
+    `problem`, `remedy`: what keeps it from being recovered, and what to do; empty where nothing does.
+    `belonging`: of an orphan: which session it was begun in, and what was noted about it; None where that is not known.
     """
 
     recording_id: UUID
-    stored: StoredRecording | None
-    segments: Mapping[int, Path]
-    began_at: datetime.datetime | None
-    recorded_s: float
+    stored: StoredRecording | None  # its row; None: an orphan
+    segments: Mapping[int, Path]  # its journals, by segment
+    began_at: datetime.datetime | None  # None: it was ended before a journal was begun
+    recorded_s: float  # how much there is, up to the last record that was written
     problem: str = ""
     remedy: str = ""
     belonging: Belonging | None = None
@@ -83,15 +71,7 @@ class Recovered:
 
 
 def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
-    """All recordings that nobody stopped, oldest first. Quick: only the ends of the files are looked at.
-
-    Raises
-    ------
-    LibraryError
-        The database does not answer, or the library is gone.
-    OSError
-        The folder of the recordings cannot be read.
-    """
+    """Give all recordings that nobody stopped, oldest first, from file ends; raises LibraryError or OSError."""
     opened.refuse_gone()  # else all its parts would seem to be missing
     files, recordings = find_segments(opened.recordings), opened.library.recordings
     known = recordings.known()
@@ -110,17 +90,7 @@ def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
 
 
 def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> Recovered:
-    """Read all that there is and close the recording's row.
-
-    Raises
-    ------
-    JournalRefusedError
-        It has a problem: it stays open.
-    LibraryError
-        The row cannot be written.
-    OSError
-        A file cannot be read.
-    """
+    """Read all there is and close the row; raises JournalRefusedError (it stays open), LibraryError, OSError."""
     if interrupted.stored is None:
         raise ValueError("an orphan has no row to close: adopt it")
     if interrupted.problem:
@@ -131,17 +101,7 @@ def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> 
 def adopt(
     opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, reported: Recording, report: Report
 ) -> Recovered:
-    """Make an orphan a recording of a session, in order of time, worn as the session's latest placement states.
-
-    Raises
-    ------
-    JournalRefusedError
-        It has a problem.
-    LibraryError
-        There is no such session, it has a recording of this name, or one of the two is simulated.
-    OSError
-        A file cannot be read.
-    """
+    """Make an orphan a session's recording, worn as placed last; raises JournalRefusedError or LibraryError."""
     if orphan.problem:
         raise JournalRefusedError(str(orphan.recording_id), orphan.problem, orphan.remedy)
     contents = _Contents(opened, orphan, report)
@@ -157,13 +117,7 @@ def adopt(
 
 
 def adopt_home(opened: OpenedLibrary, orphan: Interrupted, report: Report) -> Recovered:
-    """Put an orphan into the session that it was begun in; where its name is taken there, under the next free one.
-
-    Raises
-    ------
-    JournalRefusedError, LibraryError, OSError
-        As `adopt`; a LibraryError too where it does not say which session that is.
-    """
+    """Put an orphan into its own session, under a free name; raises as `adopt`, LibraryError if unknown."""
     if orphan.belonging is None:
         raise LibraryError("The session of this recording is unknown", "Export the recording")
     reported, visit = orphan.belonging.details, opened.library.sessions.get(orphan.belonging.session_id)

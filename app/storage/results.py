@@ -9,12 +9,12 @@ from typing import Any
 from uuid import UUID
 
 from sqlalchemy import delete, select
-from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import canonical
-from app.storage.database.models import ResultRow, SessionRow
+from app.storage.database.models import ResultRow
 from app.storage.database.values import stored_result
-from app.storage.stored import AnalysisInputs, LibraryError, ResultKind, Role, StoredResult
+from app.storage.sessions import existing_session
+from app.storage.stored import AnalysisInputs, ResultKind, Role, StoredResult
 from app.storage.unit_of_work import UnitOfWork
 
 MOST_KEPT = 2  # of a session and kind: what holds, and what did before the last correction, should that be undone
@@ -43,18 +43,10 @@ class Results:
     def keep(
         self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs, content_format: str, content: bytes
     ) -> StoredResult:
-        """Store what was computed, in the place of the eldest; what was computed again replaces what was there.
-
-        Whoever may look at a session may keep it, so that a viewer, too, waits for it once only.
-
-        Raises
-        ------
-        LibraryError
-            There is no such session.
-        """
+        """Store a result in place of the eldest or of the same inputs; viewers may, too; raises LibraryError."""
         key = key_of(inputs)
         with self._unit.writing(Role.VIEWER) as session:
-            _existing(session, session_id)
+            existing_session(session, session_id)
             row = session.scalars(_required(session_id, kind, key)).first()
             if row is not None and (row.format, row.content) != (content_format, content):
                 session.delete(row)
@@ -91,8 +83,3 @@ def _plain(inputs: AnalysisInputs) -> dict[str, Any]:
 
 def _required(session_id: UUID, kind: ResultKind, key: str) -> Any:
     return select(ResultRow).where(ResultRow.session_id == session_id, ResultRow.kind == kind, ResultRow.key == key)
-
-
-def _existing(session: OrmSession, session_id: UUID) -> None:
-    if session.get(SessionRow, session_id) is None:
-        raise LibraryError("This session is no longer in the library", "Reload the list")

@@ -30,15 +30,7 @@ SETTLED = datetime.timedelta(days=1)  # in which somebody notices that the date 
 
 
 def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] = now_utc) -> int:
-    """Destroy what was deleted too long ago to be restored; how many sessions that were. To be done at every start.
-
-    Raises
-    ------
-    LibraryError
-        The operator may not, or the database cannot be written.
-    OSError
-        A file cannot be overwritten or removed.
-    """
+    """Destroy what is past restoring, at every start; give the number of sessions; raises LibraryError."""
     library = opened.library
     before = overdue_before(opened, now())
     if before is None:
@@ -55,13 +47,7 @@ def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] 
 
 
 def overdue_before(opened: OpenedLibrary, now: datetime.datetime) -> datetime.datetime | None:
-    """Find the instant before which what was deleted is overdue; None: nothing is, as far as the clock can be trusted.
-
-    Raises
-    ------
-    LibraryError
-        The database cannot be read.
-    """
+    """Give the instant before which deletions are overdue, None: none by a trusted clock; raises LibraryError."""
     if opened.shared is not None:  # by the server's clock, which `now` of its library goes by
         return opened.library.now() - KEPT_DELETED
     left, later = KEPT_DELETED, now
@@ -76,13 +62,7 @@ def overdue_before(opened: OpenedLibrary, now: datetime.datetime) -> datetime.da
 
 
 def destroy_recording(opened: OpenedLibrary, recording: StoredRecording) -> None:
-    """Make a recording's samples unreadable for good. A recording that is destroyed already is left as it is.
-
-    Raises
-    ------
-    LibraryError, OSError
-        As in `destroy_overdue`.
-    """
+    """Make a recording's samples unreadable for good, or leave it if they are; raises LibraryError, OSError."""
     with one_at_a_time:
         # what was handed over since it was listed is in the shared place, too
         now = opened.library.recordings.find(recording.id) if opened.shared is not None else None

@@ -65,15 +65,7 @@ class SeenLibraries:
             self._latest[path] = end
 
     def accept(self, library: Library, rollback: Rollback) -> None:
-        """Go on from the library's state as it is; that this was accepted is in its audit.
-
-        Raises
-        ------
-        NotAllowedError
-            The operator is not an administrator.
-        LibraryError
-            It cannot be recorded.
-        """
+        """Accept the library's older state, noted in its audit; raises NotAllowedError or LibraryError."""
         library.audit.note_rollback(rollback.first, rollback.last)
         _write(self._path(library), [library.audit.end])
 

@@ -67,13 +67,7 @@ class LibraryRoot:
         self._identity = _identity(self.folder)
 
     def refuse_gone(self) -> None:
-        """See that it is there.
-
-        Raises
-        ------
-        LibraryGoneError
-            It is not.
-        """
+        """Raise LibraryGoneError where the folder is not there."""
         if not self.is_there():
             raise LibraryGoneError(tr(GONE).format(folder=self.folder), BRING_BACK)
 
@@ -89,13 +83,7 @@ def count_sheltered() -> int:
 
 
 def read_id(folder: Path) -> str:
-    """Which library the folder states that it is; empty where it states none.
-
-    Raises
-    ------
-    OSError
-        The file cannot be read, for another reason than that there is none.
-    """
+    """Give the library id that the folder states, empty where none; raises OSError."""
     try:
         return (folder / ID_FILE).read_text(encoding="ascii", errors="replace").strip()
     except FileNotFoundError:
@@ -103,26 +91,15 @@ def read_id(folder: Path) -> str:
 
 
 def root_of(folder: Path, database: "Database") -> LibraryRoot:
-    """The root of a library whose database is open; one that was made by an earlier version is given its id.
-
-    Raises
-    ------
-    LibraryError
-        The database cannot be read or written.
-    OSError
-        The folder cannot be read or written.
-    """
-    from app.storage.database.models import SettingRow
+    """Give the root of an open library, writing an id where an earlier version made it; LibraryError, OSError."""
+    from app.storage.database.models import SettingRow  # the page of a missing library opens none
 
     with database.reading() as session:
-        row = session.get(SettingRow, ID_SETTING)
-        library_id = "" if row is None else str(row.value)
+        library_id = str(SettingRow.of(session, ID_SETTING, ""))
     if not library_id:
-        with database.writing() as session:
-            row = session.get(SettingRow, ID_SETTING)  # another program may have been quicker
-            library_id = secrets.token_hex(ID_BYTES) if row is None else str(row.value)
-            if row is None:
-                session.add(SettingRow(name=ID_SETTING, value=library_id))
+        with database.writing() as session:  # another program may have been quicker
+            library_id = str(SettingRow.of(session, ID_SETTING, secrets.token_hex(ID_BYTES)))
+            SettingRow.put(session, ID_SETTING, library_id)
     if read_id(folder) != library_id:
         replace_file(folder / ID_FILE, library_id.encode())
     return LibraryRoot(folder, library_id)

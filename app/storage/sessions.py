@@ -50,13 +50,7 @@ class Sessions:
         self._unit = unit
 
     def create(self, patient_id: UUID, reported: Session, limits: Limits = NO_LIMITS) -> StoredSession:
-        """Add a visit that has no recordings yet; the patient's own row contains who the patient is.
-
-        Raises
-        ------
-        LibraryError
-            There is no such patient, `reported` is simulated and the patient is not, or a zero or sign is out of range.
-        """
+        """Add a visit without recordings; raises LibraryError (no patient, simulated mismatch, out of range)."""
         if reported.recordings or reported.sensors:
             raise ValueError("a session is created without recordings and sensors: place and start them")
         _refuse_wrong_joints(reported)
@@ -87,24 +81,12 @@ class Sessions:
             return stored_session(row)
 
     def get(self, session_id: UUID) -> StoredSession:
-        """A visit, to go on with what is open already.
-
-        Raises
-        ------
-        LibraryError
-            There is no such visit.
-        """
+        """Give a visit, to go on with what is open already; raises LibraryError where there is none."""
         with self._unit.reading() as session:
             return stored_session(existing_session(session, session_id))
 
     def view(self, session_id: UUID) -> StoredSession:
-        """A visit that somebody opens to look at: it is noted who.
-
-        Raises
-        ------
-        LibraryError
-            There is no such visit, or it cannot be noted.
-        """
+        """Give a visit for viewing, noted in the audit; raises LibraryError, also where it cannot be noted."""
         with self._unit.writing(Role.VIEWER) as session:
             row = existing_session(session, session_id)
             note(self._unit, session, Action.VIEW, about("session", session_id))
@@ -113,10 +95,7 @@ class Sessions:
     def list(
         self, patient_id: UUID | None = None, text: str = "", is_deleted: bool = False
     ) -> tuple[SessionSummary, ...]:
-        """Visits of one patient or of all, latest first, that hold `text` in their words, conditions or patient's code.
-
-        Those of deleted patients are not listed; `is_deleted` lists the visits that were deleted by themselves.
-        """
+        """Give visits with `text` in words, conditions or code, latest first; `is_deleted`: the deleted ones."""
         is_required: list[ColumnElement[bool]] = [
             PatientRow.deleted_at.is_(None),
             SessionRow.deleted_at.is_not(None) if is_deleted else SessionRow.deleted_at.is_(None),
@@ -135,17 +114,7 @@ class Sessions:
     def change(
         self, visit: StoredSession, reported: Session, comment: str | None = None, limits: Limits | None = None
     ) -> StoredSession:
-        """Correct what was entered about a visit: words, goniometer, turned signs, the `comment`, the `limits`.
-
-        Kept in the history, and undone from there. Recordings, sensors and patient are changed where they belong.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            `visit` is not what the library holds any more.
-        LibraryError
-            A zero or sign is out of range.
-        """
+        """Correct a visit's entries, undoable from the history; raises ChangedMeanwhileError or LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = unchanged(existing_session(session, visit.id), visit.version)
             apply(self._unit, session, session_changes(row, reported, comment, limits), row.patient_id, row.id)
@@ -153,13 +122,7 @@ class Sessions:
             return stored_session(row)
 
     def place(self, session_id: UUID, sensors: Mapping[Site, PlacedSensor]) -> Placement:
-        """Say which sensor is worn where from now on: what is recorded next takes the latest placement.
-
-        Raises
-        ------
-        LibraryError
-            One sensor at two sites, or there is no such visit.
-        """
+        """Store which sensor is worn where from now on; raises LibraryError for one sensor at two sites."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = new_placement(self._unit, session, existing_session(session, session_id), sensors)
             note(self._unit, session, Action.EDIT, about("session", session_id), fields=["placement"])
@@ -180,13 +143,7 @@ class Sessions:
             return tuple(stored_session(row) for row in rows)
 
     def destroy(self, session_id: UUID) -> None:
-        """Remove a visit for good. Its journals' keys have to be destroyed first.
-
-        Raises
-        ------
-        LibraryError
-            Neither it nor its patient was deleted, or less than 30 days ago.
-        """
+        """Remove a visit for good, after its journals' keys; raises LibraryError if deleted under 30 days ago."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_session(session, session_id)
             deleted = [at for at in (row.deleted_at, row.patient.deleted_at) if at is not None]
@@ -251,13 +208,7 @@ def session_changes(
 
 
 def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -> None:
-    """See that what is to be destroyed was deleted long enough ago.
-
-    Raises
-    ------
-    LibraryError
-        It was not.
-    """
+    """Raise LibraryError where what is to be destroyed was not deleted long enough ago."""
     if deleted_at is None or now - deleted_at < KEPT_DELETED:
         raise LibraryError(
             tr("Deleted data can be destroyed only after {days} days").format(days=KEPT_DELETED.days),

@@ -55,13 +55,7 @@ class SharedEdits:
         self._unit = unit
 
     def patient(self, patient_id: UUID, base: Values, stated: Values) -> Edited[StoredPatient]:
-        """Apply what is entered about a patient.
-
-        Raises
-        ------
-        LibraryError
-            As in `Patients.change`, or the patient was deleted or merged into another.
-        """
+        """Apply edits of a patient; raises LibraryError as `Patients.change`, or if deleted or merged."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_patient(session, patient_id)
             if row.merged_into_id is not None:
@@ -78,13 +72,7 @@ class SharedEdits:
             return Edited(stored_patient(session, row), contests, others)
 
     def session(self, session_id: UUID, base: Values, stated: Values) -> Edited[StoredSession]:
-        """Apply what is entered about a session, its comment and limits.
-
-        Raises
-        ------
-        LibraryError
-            As in `Sessions.change`, or the session was deleted.
-        """
+        """Apply edits of a session; raises LibraryError as `Sessions.change`, or where it was deleted."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_session(session, session_id)
             _refuse_deleted(row)
@@ -99,13 +87,7 @@ class SharedEdits:
             return Edited(stored_session(row), contests, others)
 
     def recording(self, recording_id: UUID, base: Values, stated: Values) -> Edited[StoredRecording]:
-        """Apply what is entered about a recording.
-
-        Raises
-        ------
-        LibraryError
-            As in `Recordings.change`, or its session was deleted.
-        """
+        """Apply edits of a recording; raises LibraryError as `Recordings.change`, or for a deleted session."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             edit = self._of_recording(session, row)
@@ -113,15 +95,7 @@ class SharedEdits:
             return Edited(stored_recording(row), contests, others)
 
     def decision(self, recording_id: UUID, is_kept: bool) -> Edited[StoredRecording]:
-        """Take the answer whether a recording is kept, given where nobody seemed to have answered yet.
-
-        Where somebody else has answered otherwise meanwhile, that is contested; where the same, there is nothing to do.
-
-        Raises
-        ------
-        LibraryError
-            There is no such recording, or its session was deleted.
-        """
+        """Store whether a recording is kept, contested if another decided otherwise; raises LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             edit = self._of_recording(session, row)
@@ -135,21 +109,7 @@ class SharedEdits:
     def placement(
         self, session_id: UUID, seen: Mapping[UUID, UUID | None], worn: Sequence[tuple[Sequence[UUID], Worn]]
     ) -> Edited[StoredSession]:
-        """State which sensor was worn where in recordings that were made already.
-
-        Parameters
-        ----------
-        seen
-            By recording the placement that was shown.
-        worn
-            What is stated for which recordings. All of it takes effect, or, where somebody else has meanwhile stated
-            otherwise for one of them, nothing.
-
-        Raises
-        ------
-        LibraryError
-            One sensor at two sites, or the session was deleted.
-        """
+        """Store past recordings' placements, none if one is contested; `seen`: as shown; raises LibraryError."""
         with self._unit.writing(Role.CLINICIAN) as session:
             visit = existing_session(session, session_id)
             _refuse_deleted(visit)

@@ -131,13 +131,7 @@ class Slot:
 
 
 def whole(slot: Slot) -> Slot:
-    """The slot, once it can be opened without being believed: its file may come from anywhere.
-
-    Raises
-    ------
-    ValueError, TypeError
-        It is damaged, or a guess would cost more than a machine has.
-    """
+    """Give an untrusted slot if it is safe to open; raises ValueError or TypeError if damaged or too costly."""
     sizes = [len(base64.b64decode(text, validate=True)) for text in (slot.salt, slot.nonce, slot.wrapped)]
     public = [len(base64.b64decode(text, validate=True)) for text in (slot.public, slot.sealed, slot.mark)]
     if sizes != SIZES or public not in ([0, 0, 0], PUBLIC_SIZES):

@@ -335,13 +335,7 @@ class Checkpoint:
 
     @classmethod
     def parsed(cls, text: str) -> Self:
-        """Read what `str` wrote.
-
-        Raises
-        ------
-        LibraryError
-            It is not a checkpoint.
-        """
+        """Parse what `str` wrote; raises LibraryError for anything but a checkpoint."""
         match text.split():
             case ["gaitwright-audit/1", number, digest] if number.isdecimal() and len(digest) == 64:
                 return cls(int(number), digest)
@@ -365,14 +359,3 @@ class AuditReport:
 
     end: Checkpoint
     faults: tuple[AuditFault, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class PatientFile:
-    """Everything of one patient, as the patient may ask for."""
-
-    patient: StoredPatient
-    sessions: tuple[StoredSession, ...]
-    corrections: tuple[Correction, ...]
-    results: tuple[StoredResult, ...]
-    audit: tuple[AuditEntry, ...]

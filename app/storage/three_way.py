@@ -74,10 +74,7 @@ def three_way(base: Values, mine: Values, theirs: Values) -> Merge:
 
 
 def rebased(base: Values, stated: Values, held: Values) -> tuple[dict[str, Value], dict[str, Value]]:
-    """Go on from what the library holds now: what was entered since `base` stays, all else is as it is held.
-
-    Returns what it is based on from now on, and what is entered.
-    """
+    """Rebase edits since `base` onto `held`; give the new base and the values entered."""
     is_open = {field: value not in (base[field], held[field]) for field, value in stated.items()}
     return (
         {field: base[field] if is_open[field] else held[field] for field in stated},

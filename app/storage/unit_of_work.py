@@ -47,30 +47,14 @@ class UnitOfWork:
 
     @contextmanager
     def reading(self) -> Iterator[OrmSession]:
-        """What the library holds at one instant.
-
-        Raises
-        ------
-        NotAllowedError
-            Nobody is logged in.
-        LibraryError
-            The database cannot be read.
-        """
+        """Give one instant of the library; raises NotAllowedError (not logged in) or LibraryError."""
         _ = self.code
         with self.database.reading() as session:
             yield session
 
     @contextmanager
     def writing(self, needed: Role) -> Iterator[OrmSession]:
-        """All or nothing, under the write lock; see `Database.writing`.
-
-        Raises
-        ------
-        NotAllowedError
-            The operator is not, or no longer, allowed to.
-        LibraryError
-            The database cannot be written, or a simulated recording would get among real ones.
-        """
+        """Write all or nothing under the lock (`Database.writing`); raises NotAllowedError or LibraryError."""
         code = self.code
         with self.database.writing() as session:
             if self.station:

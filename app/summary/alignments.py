@@ -19,13 +19,7 @@ HEADER = (
 
 
 def write_alignments(recordings: Sequence[Recording], path: Path) -> None:
-    """Write the table of the walks that count; nothing where nothing was changed.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write the table of walks that count, nothing without changes; raises OSError."""
     lines = [
         _cells(recording, recording.alignment, part)
         for recording in changed_walks(recordings)

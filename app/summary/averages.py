@@ -25,17 +25,11 @@ from core.verdicts.stride_means import mean_of_strides
 
 @dataclass(frozen=True, slots=True)
 class Average:
-    """One average; NaN where it is not reported, was not measured, or is not known.
-
-    Attributes
-    ----------
-    error
-        Half of what a difference of two walks has to exceed.
-    """
+    """One average; NaN where it is not reported, was not measured, or is not known."""
 
     mean: float
     sd: float
-    error: float
+    error: float  # half of what a difference of two walks has to exceed
     assessment: Assessment
 
 

@@ -70,7 +70,7 @@ def changes_on_curves(found: Comparison) -> list[Deviation]:
             Deviation(
                 extreme_of(joint, curve_deg, *low, is_maximum=False),
                 extreme_of(joint, curve_deg, *high, is_maximum=True),
-                words=f"{row.side[0].upper()} {size}",
+                words=f"{row.side.letter} {size}",
                 more=pattern.format(size=apart, other=row.against.name),
                 is_larger_than_error=True,
             )

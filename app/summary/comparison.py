@@ -78,11 +78,7 @@ class Comparison:
         return tuple(part for k, part in enumerate(self.parts) if k != self.base)
 
     def base_of(self, part: Part) -> Part:
-        """What a part is compared with: the condition that its alignment was changed from, else that of all.
-
-        Where sensors were strapped on again a condition may be there twice: the latest before the part counts. What the
-        prosthesis was put back to is compared with the first walks with it.
-        """
+        """Give a part's base: a former walk like it, else what its alignment changed from, else that of all."""
         if self.kind is not Contrast.CONDITIONS:
             return self.against
         before = self.parts[: self.parts.index(part)]
@@ -115,10 +111,7 @@ class Comparison:
 
     @property
     def changes(self) -> tuple[Compared, ...]:
-        """What the screen shows: between visits the change to the latest, else the changes of all parts.
-
-        Its sentences and its table speak of these alone, so that no sentence states what the table does not show.
-        """
+        """Give the changes shown, by sentences and table alike: to the latest visit, else of all parts."""
         return tuple(row for row in self.rows if self.kind is not Contrast.VISITS or row.part is self.latest)
 
     @cached_property

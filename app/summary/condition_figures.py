@@ -1,6 +1,5 @@
 """The key figures of each condition of a session: those of report, screen and course, for files that leave."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +8,7 @@ from app.summary.comparison import compare_legs, first_and_second
 from app.summary.conditions import Part, conditions_of
 from app.summary.differences import likely_figures
 from app.summary.measures import MEASURES
+from app.system.tables import finite
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.goals import NO_GOALS, AgreedGoals
@@ -60,9 +60,9 @@ def summarise_conditions(
         sides["both"] = {}
         for one in condition_figures(part):
             sides["both" if one.side is None else str(one.side)] |= {
-                f"{one.column}_mean": _number(one.found.mean),
-                f"{one.column}_sd": _number(one.found.sd),
-                f"{one.column}_error": _number(one.error),
+                f"{one.column}_mean": finite(one.found.mean),
+                f"{one.column}_sd": finite(one.found.sd),
+                f"{one.column}_error": finite(one.error),
                 f"{one.column}_status": str(one.verdict),
             }
         sides["both"] |= {"legs": _legs(part, analysis)} if len(part.sides) == len(Side) else {}
@@ -77,14 +77,10 @@ def _legs(part: Part, analysis: Analysis) -> dict[str, Any]:
     found = {column: compare_legs(part, column, sides) for column in BETWEEN_LEGS}
     return {
         column: {
-            "difference": _number(one.difference),
-            **{key: _number(value) for key, value in likely_figures(one).items()},
+            "difference": finite(one.difference),
+            **{key: finite(value) for key, value in likely_figures(one).items()},
             "mark": str(one.mark),
         }
         for column, one in found.items()
         if one.is_reported
     }
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

@@ -262,10 +262,7 @@ class Part:
 def conditions_of(
     analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
 ) -> tuple[Part, ...]:
-    """The parts of a session that stand for its conditions: tests and walks towards a target only where alone.
-
-    Parameters as of `parts_of`.
-    """
+    """Give a session's condition parts, tests and target walks only where alone; arguments as `parts_of`."""
     parts = parts_of(analysis, recordings, prefix, agreed)
     walked = {(part.name, part.attachment) for part in parts if not part.is_apart}
     return tuple(part for part in parts if not part.is_apart or (part.name, part.attachment) not in walked)
@@ -274,19 +271,8 @@ def conditions_of(
 def parts_of(
     analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
 ) -> tuple[Part, ...]:
-    """The walks of one session that have strides, those of a pool together.
-
-    Walks without a condition stay by themselves, named as recorded. Each part is called as its first walk is called
-    everywhere: where a condition has no strides, its letter is left out.
-
-    Parameters
-    ----------
-    recordings
-        Those of the session, in order of time, whose conditions and attachments count.
-    prefix
-        Comes before each letter.
-    agreed
-        The goals by the session's day.
+    """Give the walks with strides, pooled by condition; walks without one stay single, named as recorded.
+    `recordings`: in time order; `prefix`: before each letter; letters of parts without strides are skipped.
     """
     pools, letters, changed = pools_of(recordings), pool_letters(recordings), alignments_of(recordings)
     others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks not in `recordings`

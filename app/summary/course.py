@@ -10,6 +10,7 @@ from typing import Any
 
 from app.summary.conditions import Part
 from app.summary.visits import by_condition
+from app.system.tables import finite
 from core.body import Joint, Side
 from core.goals import OF_LEGS
 from core.parameters import CADENCE, SPEED
@@ -122,13 +123,7 @@ class Course:
 
 
 def course_of(analysis: Analysis, recordings: Sequence[Recording]) -> Course:
-    """The figures of a visit by condition, each strapping's last, never pooled.
-
-    Parameters
-    ----------
-    recordings
-        Those of the session, in order of time, whose conditions and strappings count.
-    """
+    """Give a visit's figures by condition, each strapping's last, never pooled; `recordings` in time order."""
     walked, tested = by_condition(analysis, recordings), _tests(analysis, recordings)
     conditions = [
         _condition(name, walked[name], tested.get(name, ()))
@@ -214,9 +209,8 @@ def change(
 
 
 def change_between_legs(one: CourseCondition, first: CourseCondition, column: str) -> Difference | None:
-    """By how much what the legs differ by has changed since an earlier visit: each leg's own change is in its error.
-
-    Of 25 healthy people and 21 after stroke at two visits it calls none (`felius_two_visits.csv`, stance).
+    """Give the change of the legs' difference since an earlier visit, with each leg's own change in its error.
+    Of 25 healthy people and 21 after stroke at two visits it finds none (`felius_two_visits.csv`, stance).
     """
     now, before = one.between_legs(column), first.between_legs(column)
     if now is None or before is None or not (now.is_reported and before.is_reported):
@@ -286,7 +280,7 @@ def course_in_json(course: Course) -> dict[str, Any]:
                 "tests": [
                     {
                         "column": test.column,
-                        "mean": test.found.mean if math.isfinite(test.found.mean) else None,
+                        "mean": finite(test.found.mean),
                         "attempts": test.found.attempts,
                         "verdict": test.verdict,
                     }
@@ -299,13 +293,7 @@ def course_in_json(course: Course) -> dict[str, Any]:
 
 
 def course_from_json(content: Any) -> Course:
-    """What `course_in_json` was given.
-
-    Raises
-    ------
-    ValueError
-        Another version has written it, or it is none.
-    """
+    """Read what `course_in_json` was given; raises ValueError for another version's or other content."""
     try:
         if content["format"] != FORMAT:
             raise ValueError(content["format"])

@@ -194,15 +194,7 @@ def lanes(
     goals: Sequence[Goal] = (),
     kinds: Sequence[LaneKind] | None = None,
 ) -> tuple[CourseLane, ...]:
-    """What goals are of, speed, knee and stance over the visits, in order of time.
-
-    Parameters
-    ----------
-    condition
-        The one that is shown; None: the usual one.
-    kinds
-        What has a lane in place of these.
-    """
+    """Build the lanes of goals, speed, knee and stance over the visits; `condition` None: the usual one."""
     shown = usual_condition(visits) if condition is None else condition
     affected = next((visit.course.affected for visit in reversed(visits) if visit.course is not None), None)
     sides = (affected,) if affected is not None else tuple(Side)

@@ -70,23 +70,14 @@ class QualityLine:
 class DataQuality:
     """What may be read of a walk.
 
-    Attributes
-    ----------
-    first, then
-        The sentence that states it, and one beside it.
-    verdict
-        The gravest of all.
-    lines
-        What speaks against it, the gravest first.
-    in_order
-        What was looked at and found in order; empty where nothing was.
+    `first`, `then`: the sentence that states it, and one beside it.
     """
 
-    verdict: Verdict
+    verdict: Verdict  # the gravest of all
     first: str
     then: str
-    lines: tuple[QualityLine, ...]
-    in_order: str
+    lines: tuple[QualityLine, ...]  # what speaks against it, the gravest first
+    in_order: str  # what was looked at and found in order; empty where nothing was
 
 
 def data_quality(facts: Facts) -> DataQuality:
@@ -126,10 +117,7 @@ def _of_finding(finding: Finding) -> QualityLine:
 
 
 def _noticed(visit: AnalysedVisit, names: set[str], gates: set[str]) -> list[Finding]:
-    """What was noticed of these recordings or of the session that no verdict states already, the gravest first.
-
-    Where it was found is named as the reader knows it.
-    """
+    """Give findings of the recordings or the session that no verdict states, gravest first, in user's names."""
     others = {one.name for one in visit.session.recordings} - names if names else set()
     found = [
         finding

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.system.tables import figure_cell, write_table
 from app.wording.body import segment_name
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, tr
 from core.body import Joint
 from core.samples import ComplexArray, FloatArray
@@ -37,7 +38,7 @@ class FoundFigure:
             return tr("over {most}").format(most=f"{MARGIN_BEYOND:.0f}") if self.value > 0 else tr("not known")
         if self.column == "pairing_margin" and self.value > MARGIN_BEYOND:
             return tr("over {most}").format(most=f"{MARGIN_BEYOND:.0f}")
-        number = figure_text(self.value, f".{self.decimals}f").replace("-", "\N{MINUS SIGN}")
+        number = figure_text(self.value, f".{self.decimals}f").replace("-", MINUS)
         unit = UNIT_WORDS[self.unit]
         return f"{number}{unit}" if unit == "°" else f"{number} {unit}".strip()
 
@@ -118,13 +119,7 @@ def names_of_files(joint: Joint, is_simulated: bool) -> dict[str, str]:
 
 
 def write_diagnostics(found: JointDiagnostics, is_simulated: bool, folder: Path) -> list[Path]:
-    """Write every number that the page draws or states into `folder`, which is made where it is missing.
-
-    Raises
-    ------
-    OSError
-        The folder or a file cannot be written.
-    """
+    """Write every number that the page shows to files in `folder`, created if missing; raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = {what: folder / name for what, name in names_of_files(found.joint, is_simulated).items()}
     _write_costs(found, paths[AXIS_COST])

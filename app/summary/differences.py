@@ -71,12 +71,7 @@ class Row:
 
 
 def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
-    """Within each visit its conditions, then each later visit against the first.
-
-    Between visits a condition is compared with the same one of the first, and never with another; what is not
-    compared for that reason is in `without_common_condition`. Letters of several visits have the visit's number
-    before them.
-    """
+    """Compare conditions within each visit, then each later visit with the first, in the same condition only."""
     of_visits = []
     for number, (session, analysis) in enumerate(visits, start=1):
         prefix = str(number) if len(visits) > 1 else ""
@@ -139,24 +134,12 @@ def rows_along_chain(comparison: Comparison) -> Iterator[Row]:
 
 
 def write_differences(found: Iterable[Row], path: Path) -> None:
-    """Write the table.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write the table of differences as CSV; raises OSError."""
     write_table(HEADER, map(difference_cells, found), path)
 
 
 def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
-    """Write the mean cycles that are laid over one another.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write the mean cycles that are overlaid in the chart as CSV; raises OSError."""
     curves = [(part, joint) for joint in Joint for part in parts if joint in part.joints]
     cells = [list(_curve(part, joint)) for part, joint in curves]
     heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in OF_CURVE]
@@ -180,13 +163,7 @@ def _curve(part: Part, joint: Joint) -> Iterator[tuple[str, ...]]:
 
 
 def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> None:
-    """Write the legs of each part side by side, the first of `sides` less the second; nothing with one leg only.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write each part's legs side by side, first of `sides` less second; nothing for one leg. Raises OSError."""
     header, lines = legs_table(parts, sides)
     if lines:
         write_table(header, lines, path)

@@ -76,10 +76,7 @@ def draw_legs(session: Session, analysis: Analysis, recording: RecordingAnalysis
 
 
 def draw_pelvis(session: Session, recording: RecordingAnalysis) -> tuple[FloatArray, FloatArray] | None:
-    """Frames (n,) of a walk, s, and the pelvis at each (n, 4, 3): left hip, top, right hip and back; metres.
-
-    None where no sensor was on it, or it may not be read.
-    """
+    """Give times (n,) s and pelvis points (n, 4, 3) m: left hip, top, right hip, back; None if not reported."""
     if recording.kind is not RecordingKind.WALKING or not _has_pelvis(recording) or not len(recording.time_s):
         return None
     frames, height_m = _frames(recording.time_s), height_of(session)

@@ -75,10 +75,7 @@ def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
 
 
 def reached_at(goals: Sequence[Goal], course: Course) -> tuple[GoalFigure, ...]:
-    """Goals that are reached in every condition of a visit that has them, each as where it is by least, surest first.
-
-    With an aid alone, or barefoot alone, it would be half of what was agreed.
-    """
+    """Give goals reached in every condition walked, each with its least favourable value, surest first."""
     found = []
     for goal in goals:
         is_of_test = goal.column in PROTOCOLS
@@ -173,7 +170,7 @@ def often_at_goal(found: GoalFigure) -> str:
 
 def goal_mark(goal: Goal) -> str:
     """A goal in a narrow place: "goal L 60°", "goal ±2 %"."""
-    letter = goal.of.side[0].upper() if goal.of.side is not None else ""
+    letter = goal.of.side.letter if goal.of.side is not None else ""
     sign = (
         "\N{PLUS-MINUS SIGN}" if goal.of is GoalOf.BETWEEN else "\N{LESS-THAN OR EQUAL TO}" if goal.is_at_most else ""
     )

@@ -19,7 +19,7 @@ from app.summary.interval_words import edge_decimals, further_evidence, interval
 from app.summary.legs_in_words import both_knees, clause_of, legs_differ, legs_similar, rounded
 from app.summary.measure_sentences import unit_and_decimals, unit_in_sentence
 from app.summary.numbers_in_words import DAGGER, fixed, signed
-from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.summary.trend_lines import TrendLine, all_lines, walked_visits
 from app.summary.what_stands_out import LEAST_CERTAIN, STATED_BETWEEN_LEGS, unsure_sentence
 from app.wording.body import side_name
 from app.wording.dates import day_in_words
@@ -27,7 +27,7 @@ from app.wording.measures import name_in_sentence
 from app.wording.translation import capitalised, joined, tr
 from core.body import Side
 from core.parameters import BY_COLUMN, KNEE, SPEED, STANCE, QuantityClass, Unit, unit_of
-from core.timed.measures import COLUMNS, PROTOCOLS
+from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Difference, Mark
 from core.verdicts.quantities import joint_of
 
@@ -78,7 +78,7 @@ def headline_of(facts: Facts) -> Headline:
         first = tr("Too few strides for a mean: {counted}.").format(counted=counted)
         return Headline(Rule.NOTHING, first, (tr("Repeat the walk over a longer distance or time."),))
     walked = walked_visits(facts.course, facts.condition)
-    lines = _lines(facts, walked)
+    lines = all_lines(facts.course, facts.condition, facts.part.agreed)
     found = _change(facts, walked, lines) or _between_legs(facts) or _similar(facts) or _one_leg(facts)
     if found is None:
         found = Headline(Rule.NOTHING, tr("No value of this walk is reported."))
@@ -90,10 +90,7 @@ def headline_of(facts: Facts) -> Headline:
 
 
 def order_of(facts: Facts, column: str, side: Side | None, found: Difference) -> tuple[bool, int, bool, float]:
-    """What comes first among differences of one rule is least: goals, the joints, stance and time, the foot, the ratio.
-
-    Where both sides changed, the affected one comes before the other.
-    """
+    """Give the sort key of differences of one rule: goals, joints, stance and time, foot; affected side first."""
     sides = tuple(Side) if side is None else (side,)
     is_of_other = side is not None and facts.affected not in (None, side)
     return not facts.part.agreed.is_chosen(column, sides), kind_of(column), is_of_other, -round(found.ratio, 1)
@@ -106,11 +103,6 @@ def kind_of(column: str) -> int:
     if column in PROTOCOLS or column == SPEED or BY_COLUMN[column].rests_on is QuantityClass.TIMING:
         return 1
     return 2
-
-
-def _lines(facts: Facts, walked: Sequence[CourseVisit]) -> list[TrendLine]:
-    agreed = facts.part.agreed
-    return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
 
 
 def _change(facts: Facts, walked: Sequence[CourseVisit], lines: Sequence[TrendLine]) -> Headline | None:
@@ -144,17 +136,7 @@ def _change_sentence_since(
     values: tuple[float, float],
     since: tuple[datetime.date, Sequence[datetime.date]],
 ) -> str:
-    """What a measure is, and by how much it is up or down since a day.
-
-    Parameters
-    ----------
-    difference
-        Subtracted before rounding; where rounded values disagree with it, all have a decimal more.
-    values
-        At that day and now.
-    since
-        The day, and all days of the visits, which have their years where they are of several.
-    """
+    """State a measure and its change since a day; values get a decimal more where rounding contradicts it."""
     day = day_in_words(*since)
     if column == STANCE and side is not None:
         before, now, size = rounded(column, (*values, abs(difference)))

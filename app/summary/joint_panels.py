@@ -50,13 +50,7 @@ def joint_chart(facts: Facts, kind: JointKind, headline: Headline, thin: Part | 
 
 
 def thin_part(facts: Facts, visits: Sequence[AnalysedVisit]) -> Part | None:
-    """The walk's condition at the earlier visit whose curves are drawn thin, as its headline names it.
-
-    Parameters
-    ----------
-    visits
-        The earlier ones that were read, in order of time.
-    """
+    """Give the condition at the earlier visit of the headline, whose curves are drawn thin; None without one."""
     since = headline_of(facts).since
     for visit in reversed(visits) if since is not None else ():
         if since is not None and date_of(visit.session.started) == since.day:

@@ -15,15 +15,7 @@ from core.parameters import KNEE, STANCE, Unit, unit_of
 def legs_differ(
     column: str, side: Side, values: tuple[float, float], difference: float, *, is_usual: bool = False
 ) -> str:
-    """What one leg has, and by how much this is less or more than the other.
-
-    Parameters
-    ----------
-    values
-        Of `side`, and of the other leg; `difference` is the first less the second, subtracted before rounding.
-    is_usual
-        Whether many healthy people differ as much, which is then stated.
-    """
+    """State one leg's value and its difference from the other; `is_usual`: many healthy people differ so."""
     value, other = values
     _, now, size = rounded(column, (other, value, abs(difference)), is_other_shown=False)
     unit = unit_and_decimals(column)[0]
@@ -61,10 +53,7 @@ def clause_of(column: str, side: Side | None, value: str) -> str:
 
 
 def rounded(column: str, values: Sequence[float], *, is_other_shown: bool = True) -> tuple[str, ...]:
-    """Two values and their difference, rounded once: degrees whole, all with a decimal more where they disagree.
-
-    The chart shows degrees of both legs beside the sentence; of other measures the first is shown if the sentence does.
-    """
+    """Round two values and their difference once; all get a decimal more where the difference disagrees."""
     is_angle = unit_of(column) is Unit.DEGREES
     decimals = 0 if is_angle else unit_and_decimals(column)[1]
     before, now, size = values

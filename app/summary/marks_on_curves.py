@@ -26,10 +26,7 @@ CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
 def labels_of(facts: Facts, kind: JointKind) -> list[CurveLabel]:
-    """The peaks of each leg's curve with the values that the tables have: "R 58°"; none where a peak is not reported.
-
-    Degrees as measured: who draws a curve about its mean lowers its labels with it, and states no value.
-    """
+    """Give the reported peaks of each leg's curve with the values of the tables, in degrees as measured."""
     found: list[CurveLabel] = []
     for column in LABELLED.get(kind, ()):
         window = WINDOWS[column]
@@ -42,10 +39,7 @@ def labels_of(facts: Facts, kind: JointKind) -> list[CurveLabel]:
 
 
 def bracket_of(facts: Facts, headline: Headline) -> Deviation | None:
-    """The movement that the headline is of, on its leg's curve, with its numbers; None where it is of none.
-
-    Degrees as measured: who draws a curve about its mean lowers its bracket with it.
-    """
+    """Give the headline's movement as a bracket on its curve, degrees as measured; None without a movement."""
     column, side = headline.column, headline.side
     kind = next((kind for kind in facts.kinds if column.startswith(kind)), None)
     if kind is None or side is None or BY_COLUMN[column].rests_on not in MARKED:
@@ -95,11 +89,7 @@ def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def gaps_of(facts: Facts) -> list[Gap]:
-    """Where a leg's curve lies beyond 2 SD both of the band as drawn and of the band laid at the curve's height.
-
-    A knee has to do so as measured and divided by what knees over-read; without a height nothing is stated, and of
-    hips, whose group has another zero, neither.
-    """
+    """Give where a curve leaves 2 SD of the band, as drawn and laid at the curve's height; knees rescaled too."""
     group = facts.curves_group
     if group is None or facts.bands.are_curves_of_other_ages:
         return []

@@ -26,13 +26,9 @@ FORWARD, UP = 0, 2
 class MeanLegs:
     """Both legs, or the one that was measured.
 
-    Attributes
-    ----------
-    points_m
-        Hip, knee, ankle and toes of each leg over its own stride (101, 4, 2), NaN where not to be drawn.
-    tilt_rad
-        Of the pelvis over the affected leg's stride, else the left one's (101,), forward positive; None where it is
-        not to be drawn.
+    `points_m`: hip, knee, ankle and toes of each leg over its own stride (101, 4, 2), NaN where not to be drawn.
+    `tilt_rad`: of the pelvis over the affected leg's stride, else the left one's (101,), forward positive; None where
+    it is not to be drawn.
     """
 
     points_m: Mapping[Side, FloatArray]

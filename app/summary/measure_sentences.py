@@ -48,20 +48,53 @@ CLAUSES = {
     parameters.STANCE: later("{who}: stance takes {value}"),
 }
 OTHER_OF_LEG, OTHER = later("{who}: {measure} is {value}"), later("{measure} is {value}")
+BESIDE = {  # how one leg has less than the other, and more
+    parameters.KNEE_RANGE: (
+        later("The {joint} has {size} less range of motion than the {second}: {value} against {other}."),
+        later("The {joint} has {size} more range of motion than the {second}: {value} against {other}."),
+    ),
+    "knee_stance_to_swing_deg": (
+        later("The {joint} flexes {size} less from stance to swing than the {second}: {value} against {other}."),
+        later("The {joint} flexes {size} more from stance to swing than the {second}: {value} against {other}."),
+    ),
+    "knee_while_loading_deg": (
+        later("The {joint} flexes {size} less in loading response than the {second}: {value} against {other}."),
+        later("The {joint} flexes {size} more in loading response than the {second}: {value} against {other}."),
+    ),
+    "knee_straightening_deg": (
+        later("The {joint} extends {size} less in mid-stance than the {second}: {value} against {other}."),
+        later("The {joint} extends {size} more in mid-stance than the {second}: {value} against {other}."),
+    ),
+    parameters.PUSH_OFF: (
+        later("The {joint} plantarflexes {size} less at push-off than the {second}: {value} against {other}."),
+        later("The {joint} plantarflexes {size} more at push-off than the {second}: {value} against {other}."),
+    ),
+    "ankle_rocker_deg": (
+        later("The {joint} dorsiflexes {size} less in stance than the {second}: {value} against {other}."),
+        later("The {joint} dorsiflexes {size} more in stance than the {second}: {value} against {other}."),
+    ),
+    "stance_percent": (
+        later(
+            "Stance is {size} of the gait cycle shorter on the {first} than on the {second}: {value} against {other}."
+        ),
+        later(
+            "Stance is {size} of the gait cycle longer on the {first} than on the {second}: {value} against {other}."
+        ),
+    ),
+    "step_time_s": (
+        later("Step time is {size} shorter on the {first} than on the {second}: {value} against {other}."),
+        later("Step time is {size} longer on the {first} than on the {second}: {value} against {other}."),
+    ),
+}
+BESIDE[parameters.ANKLE_RANGE] = BESIDE[parameters.KNEE_RANGE]
+OTHER_BESIDE = (
+    later("{measure} is {size} lower on the {first} than on the {second}: {value} against {other}."),
+    later("{measure} is {size} higher on the {first} than on the {second}: {value} against {other}."),
+)
 
 
 def change_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
-    """What a measure is now, and by how much it is more or less than before: "Left knee flexes 54° in B, 5° more ..."
-
-    Parameters
-    ----------
-    who
-        The joint, or the leg of a measure of no joint; empty of one of the whole walk.
-    difference
-        Subtracted before rounding; where rounded figures disagree with that, all have a decimal more.
-    now, before
-        Where it was measured, as "in B" or "on 1 July", and its value.
-    """
+    """State a measure and its change: "Left knee flexes 54° in B, 5° more ..."; empty `who`: the whole walk."""
     decimals = _decimals(column, now.value, before.value, difference)
     value, size = _figures(column, (now.value, abs(difference)), decimals)
     other = fixed(before.value, decimals) + unit_and_decimals(column)[0]
@@ -135,72 +168,7 @@ def legs_sentence(column: str, found: Difference, legs: tuple[str, str], values:
     """How the first leg's figure differs from the second's, which `legs` names."""
     unit, decimals = unit_and_decimals(column)
     first, second = legs
-    is_less = found.difference < 0
-    match column:
-        case parameters.KNEE_RANGE | parameters.ANKLE_RANGE:
-            pattern = (
-                tr("The {joint} has {size} less range of motion than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} has {size} more range of motion than the {second}: {value} against {other}.")
-            )
-        case "knee_stance_to_swing_deg":
-            pattern = (
-                tr("The {joint} flexes {size} less from stance to swing than the {second}: {value} against {other}.")
-                if is_less
-                else tr(
-                    "The {joint} flexes {size} more from stance to swing than the {second}: {value} against {other}."
-                )
-            )
-        case "knee_while_loading_deg":
-            pattern = (
-                tr("The {joint} flexes {size} less in loading response than the {second}: {value} against {other}.")
-                if is_less
-                else tr(
-                    "The {joint} flexes {size} more in loading response than the {second}: {value} against {other}."
-                )
-            )
-        case "knee_straightening_deg":
-            pattern = (
-                tr("The {joint} extends {size} less in mid-stance than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} extends {size} more in mid-stance than the {second}: {value} against {other}.")
-            )
-        case parameters.PUSH_OFF:
-            pattern = (
-                tr("The {joint} plantarflexes {size} less at push-off than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} plantarflexes {size} more at push-off than the {second}: {value} against {other}.")
-            )
-        case "ankle_rocker_deg":
-            pattern = (
-                tr("The {joint} dorsiflexes {size} less in stance than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} dorsiflexes {size} more in stance than the {second}: {value} against {other}.")
-            )
-        case "stance_percent":
-            pattern = (
-                tr(
-                    "Stance is {size} of the gait cycle shorter on the {first} than on the {second}: {value} "
-                    "against {other}."
-                )
-                if is_less
-                else tr(
-                    "Stance is {size} of the gait cycle longer on the {first} than on the {second}: {value} "
-                    "against {other}."
-                )
-            )
-        case "step_time_s":
-            pattern = (
-                tr("Step time is {size} shorter on the {first} than on the {second}: {value} against {other}.")
-                if is_less
-                else tr("Step time is {size} longer on the {first} than on the {second}: {value} against {other}.")
-            )
-        case _:
-            pattern = (
-                tr("{measure} is {size} lower on the {first} than on the {second}: {value} against {other}.")
-                if is_less
-                else tr("{measure} is {size} higher on the {first} than on the {second}: {value} against {other}.")
-            )
+    pattern = tr(BESIDE.get(column, OTHER_BESIDE)[0 if found.difference < 0 else 1])
     joint = joint_of_column(column, Side.LEFT)
     return pattern.format(
         measure=capitalised(name_in_sentence(column)),

@@ -66,7 +66,7 @@ def each_side(stated: Mapping[Side, str]) -> str:
     """Words for both legs, in one line where they agree."""
     if len(stated) == len(Side) and len(set(stated.values())) == 1:
         return f"L, R {stated[Side.LEFT]}"
-    return "\n".join(f"{side[0].upper()} {words}" for side, words in stated.items()) or NOTHING
+    return "\n".join(f"{side.letter} {words}" for side, words in stated.items()) or NOTHING
 
 
 def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:

@@ -7,10 +7,10 @@ import numpy as np
 
 from app.charts.axes import title_in_words
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
-from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, text
-from app.charts.on_paper import PLAIN
+from app.charts.drawing import DASHES, Drawing, Picture
 from app.charts.stride_chart import NO_STRIDES, Axis, StrideCurve, usual_range_deg
 from app.summary import quality
+from app.summary.conditions import Part
 from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.numbers_in_words import fixed
 from app.summary.reference_bands import OTHER_AGES, WHY_NO_BAND
@@ -92,10 +92,7 @@ def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
 
 
 def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
-    """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare.
-
-    At the hip its zero is another one, so it is drawn only where it is laid at the height of one curve.
-    """
+    """Give mean and SD of the reference group; None for hips, or without a group or a curve to compare."""
     group = facts.curves_group
     if group is None or kind == JointKind.HIP or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
         return None
@@ -106,12 +103,11 @@ def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
 
 def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
     """One leg of one walk: its mean, or its single strides where they are too few for one."""
-    letter = side[0].upper()
     off = facts.value(side, "stance_percent")
     is_known = is_mean_enough(off.n)
-    label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 1))
+    label = tr("{side} toe\u2011off {percent} %").format(side=side.letter, percent=fixed(off.mean, 1))
     return StrideCurve(
-        letter=letter,
+        letter=side.letter,
         side=side,
         angle_deg=facts.mean_curve_deg(side, kind),
         toe_off_percent=off.mean if is_known else math.nan,
@@ -187,43 +183,35 @@ def band_in_words(facts: Facts, *, has_hips: bool = False) -> str:
 def dot(verdict: Verdict) -> Picture:
     """Full where it can be read, half where with care, empty where not reported, a dash where not measured."""
     x = y = DOT / 2
-    radius = DOT / 2 - 0.6
+    radius, draw = DOT / 2 - 0.6, Drawing()
     if verdict is Verdict.NOT_MEASURED:
-        return picture([line(1, y, DOT - 1, y, PAPER.note, 1.0)], DOT, DOT)
-    ring = f'<circle cx="{x}" cy="{y}" r="{radius}" fill="{{fill}}" stroke="{PAPER.ink}" stroke-width="0.9"/>'
-    if verdict is Verdict.READ:
-        return picture([ring.format(fill=PAPER.ink)], DOT, DOT)
-    parts = [ring.format(fill=PAPER.paper)]
+        draw.line(1, y, DOT - 1, y, PAPER.note, 1.0)
+    else:
+        draw.circle(x, y, radius, PAPER.ink if verdict is Verdict.READ else PAPER.paper, PAPER.ink, 0.9)
     if verdict is Verdict.CARE:
-        parts.append(f'<path d="M{x} {y - radius}A{radius} {radius} 0 0 0 {x} {y + radius}Z" fill="{PAPER.ink}"/>')
-    return picture(parts, DOT, DOT)
-
-
-def swatch(side: Side, colour: str | None = None, width: float = PLAIN) -> Picture:
-    y = SWATCH_HEIGHT / 2
-    return picture(
-        [line(0, y, SWATCH_WIDTH, y, colour or COLOURS[side], width, DASHES[side])], SWATCH_WIDTH, SWATCH_HEIGHT
-    )
+        half = f"M{x} {y - radius}A{radius} {radius} 0 0 0 {x} {y + radius}Z"
+        draw.parts.append(f'<path d="{half}" fill="{PAPER.ink}"/>')
+    return draw.picture(DOT, DOT)
 
 
 def pair_swatch(letter: str, looks: Sequence[tuple[Side, str, float]]) -> Picture:
     """A letter, and the lines of both legs that it represents."""
-    y, parts = SWATCH_HEIGHT / 2, [text(0, 7, letter, 7.6, weight=600)]
+    y, draw = SWATCH_HEIGHT / 2, Drawing()
+    draw.text(0, 7, letter, 7.6, weight=600)
     for k, (side, colour, width) in enumerate(looks):
         x = 10 + 22 * k
-        parts.append(line(x, y, x + 19, y, colour, width, DASHES[side]))
-    return picture(parts, 53, SWATCH_HEIGHT)
+        draw.line(x, y, x + 19, y, colour, width, DASHES[side])
+    return draw.picture(53, SWATCH_HEIGHT)
 
 
 def band_swatches() -> list[tuple[Picture, str]]:
-    inner = [
-        box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_1sd, PAPER.band_1sd_edge, 0.35),
-        line(0, 4.5, SWATCH_WIDTH, 4.5, PAPER.band_mean, 0.6),
-    ]
-    outer = [box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)]
+    inner, outer = Drawing(), Drawing()
+    inner.box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_1sd, PAPER.band_1sd_edge, 0.35)
+    inner.line(0, 4.5, SWATCH_WIDTH, 4.5, PAPER.band_mean, 0.6)
+    outer.box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)
     return [
-        (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Reference mean, ±1 SD [1]")),
-        (picture(outer, SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
+        (inner.picture(SWATCH_WIDTH, SWATCH_HEIGHT), tr("Reference mean, ±1 SD [1]")),
+        (outer.picture(SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
     ]
 
 
@@ -244,21 +232,26 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
     """The figure in words and numbers, for who does not see it."""
     stated = [title_of(facts, kind) + "."]
     for side in sides:
-        numbers = [tr("{count} strides").format(count=facts.strides(side))]
+        peaks = []
         for column in PEAK_COLUMNS[kind]:
             value, at = facts.value(side, column), facts.peak_percent(side, column)
             if is_mean_enough(value.n):
                 peak = tr("{name} {value}° at {percent} % of the gait cycle")
                 name = peak_name(column)
-                numbers.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
-        found = facts.value(side, f"{kind}_range_deg")
-        if is_mean_enough(found.n):
-            numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
-        off = facts.value(side, "stance_percent")
-        if is_mean_enough(off.n):
-            numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
-        stated.append(f"{capitalised(side_name(side))}: {', '.join(numbers)}.")
+                peaks.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
+        stated.append(f"{capitalised(side_name(side))}: {leg_in_numbers(facts.part, side, kind, peaks)}.")
     return " ".join([tr("SIMULATED.")] * facts.is_simulated + stated)
+
+
+def leg_in_numbers(part: Part, side: Side, kind: str, peaks: Sequence[str]) -> str:
+    """Strides, what is stated of the peaks, range and toe-off, as far as they are known."""
+    numbers = [tr("{count} strides").format(count=part.strides(side)), *peaks]
+    found, off = part.value(side, f"{kind}_range_deg"), part.value(side, "stance_percent")
+    if is_mean_enough(found.n):
+        numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
+    if is_mean_enough(off.n):
+        numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
+    return ", ".join(numbers)
 
 
 def peak_name(column: str) -> str:

@@ -93,13 +93,7 @@ def _coverages() -> tuple[frozenset[int], ...]:
 
 
 def _has_marks(letter: str) -> bool:
-    """Whether a letter with its marks is of a family other than Inter, whose letters every word of ours is made of.
-
-    A colon is in every family and set in Inter, whatever the marks behind it.
-
-    A PDF maps each glyph of a font to text once: a mark on an Inter letter that no glyph holds together with it
-    would be copied and read aloud with that letter in every word.
-    """
+    """Check for a non-Inter letter whose marks its font has; with Inter, PDF text would repeat the mark."""
     inter, *others = _coverages()
     return ord(letter[0]) not in inter and any(set(map(ord, letter)) <= covered for covered in others)
 

@@ -31,13 +31,7 @@ class Pool(NamedTuple):
 
 
 def pools_of(recordings: Sequence[Recording]) -> Mapping[str, Pool]:
-    """Give each kept walk's pool, by the walk's name.
-
-    Parameters
-    ----------
-    recordings
-        Those of one session, in order of time.
-    """
+    """Give each kept walk's pool by the walk's name, from one session's recordings in order of time."""
     strapped = accumulate(one.is_restrapped_before for one in recordings)
     changes = alignments_of(recordings)
     since: dict[tuple[str, int], list[str]] = {}  # the conditions walked since, by those walked before

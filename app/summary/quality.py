@@ -31,10 +31,7 @@ Place = Joint | Side | None
 def caveats(
     facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[str]:
-    """Why something is not reported, or read with care, the gravest first; what holds alike of several places once.
-
-    `is_of_joints`: of the joints alone, not of the legs' timing and distance.
-    """
+    """Give why something is not reported or read with care, gravest first; `is_of_joints`: joint angles only."""
     if not facts.gait:
         return [tr("No foot or shank sensor showed a stride.")]
     return [f"{one.where}: {one.stated}" for one in causes(facts, of, is_of_joints=is_of_joints)]
@@ -66,10 +63,7 @@ class Cause:
 def causes(
     facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[Cause]:
-    """Every reason of a walk with one of these verdicts, in their order.
-
-    `is_of_joints`: of the joints alone, not of the legs' timing and distance.
-    """
+    """Give each reason of a walk with one of these verdicts, in order; `is_of_joints`: joint angles only."""
     places: dict[tuple[str, GateWords], dict[Place, Verdict]] = {}
     for place, reason in _reasons(facts.verdicts):
         if isinstance(place, Joint) or not is_of_joints:
@@ -144,7 +138,7 @@ def _without_lag(facts: Facts) -> list[Joint]:
 
 
 def _each(facts: Facts, stated: Callable[[Side], str]) -> str:
-    parts = [f"{side[0].upper()}\u00a0{stated(side)}" for side in Side if side in facts.gait]
+    parts = [f"{side.letter}\u00a0{stated(side)}" for side in Side if side in facts.gait]
     return ", ".join(parts) or tr("not measured")
 
 
@@ -155,7 +149,7 @@ def _left_out(facts: Facts) -> str:
         out = Counter({one: count for one, count in facts.part.reasons(side).items() if one is not Reason.USED})
         if out:
             each = [f"{count}\u00a0{tr(NAMES['reason'][reason])}" for reason, count in out.most_common()]
-            parts.append(f"{side[0].upper()}\u00a0{', '.join(each)}")
+            parts.append(f"{side.letter}\u00a0{', '.join(each)}")
     return "; ".join(parts) or tr("none")
 
 

@@ -22,13 +22,7 @@ class AnalysedVisit:
     analysis: Analysis
 
     def walk(self, name: str) -> RecordingAnalysis:
-        """Give the analysis of one walk.
-
-        Raises
-        ------
-        KeyError
-            There is no such walk among those analysed.
-        """
+        """Give the analysis of one walk; raises KeyError where it was not analysed."""
         for recording in self.analysis.recordings:
             if recording.name == name and recording.kind is RecordingKind.WALKING:
                 return recording
@@ -55,38 +49,25 @@ class AnalysedVisit:
 class ReportRequest:
     """What the report of a visit shows.
 
-    Attributes
-    ----------
-    walks
-        Names of the walks: one, or up to three conditions in the order of their letters. The last one is shown on
-        every page.
-    made_at
-        When the report is made; must know its time zone.
-    comment, comment_by
-        The clinical comment that was confirmed, and who confirmed it; empty: none is printed.
-    earlier
-        A visit before this one to compare with, in place of the conditions.
-    thin
-        The condition at the earlier visit whose curves page one draws thin; None: none is.
-    course
-        The patient's visits in order of time, this one the last: page one states what has changed.
-    has_course_page
-        Whether a page shows the course, from two visits on.
+    `walks`: names of the walks: one, or up to three conditions in the order of their letters. The last one is shown on
+    every page.
+    `comment`, `comment_by`: the clinical comment that was confirmed, and who confirmed it; empty: none is printed.
+    `course`: the patient's visits in order of time, this one the last: page one states what has changed.
     """
 
     visit: AnalysedVisit
     walks: tuple[str, ...]
-    made_at: datetime
+    made_at: datetime  # when the report is made; must know its time zone
     software_version: str
     comment: str = ""
     operator: str = ""
     clinic: str = ""
     paper: str = "a4"
-    earlier: AnalysedVisit | None = None
+    earlier: AnalysedVisit | None = None  # A visit before this one to compare with, in place of the conditions
     course: tuple[CourseVisit, ...] = ()
     comment_by: str = ""
-    thin: Part | None = None
-    has_course_page: bool = True
+    thin: Part | None = None  # the condition at the earlier visit whose curves page one draws thin; None: none is
+    has_course_page: bool = True  # whether a page shows the course, from two visits on
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:
@@ -102,10 +83,7 @@ class ReportRequest:
 
 
 def default_walks(visit: AnalysedVisit) -> tuple[str, ...]:
-    """Choose of each of the last conditions the walk with most usable strides, of its last strapping.
-
-    Walks without a stride that is used come last, but a report of them still states why. Empty: no walk was analysed.
-    """
+    """Choose the walk with most usable strides for each of the last conditions; empty: no walk was analysed."""
     names = visit.walk_names()
     parts = by_condition(visit.analysis, visit.session.recordings).values()
     by_time = sorted(parts, key=lambda part: max(names.index(walk.name) for walk in part.walks))

@@ -32,10 +32,7 @@ def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 
 def status_of(found: JointVerdicts) -> str:
-    """One word for a joint's angle: `READ`, `CARE`, `NOT_REPORTED`, `RANGE_ONLY` or `NO_ZERO`; empty: not measured.
-
-    `RANGE_ONLY`: the sign is not known, so the curve may be mirrored. `NO_ZERO`: its height means nothing.
-    """
+    """Give a joint's status; empty: not measured, `RANGE_ONLY`: sign unknown, `NO_ZERO`: offset meaningless."""
     if found.shape.verdict is Verdict.NOT_MEASURED:
         return ""
     if not found.shape.is_reported:

@@ -56,32 +56,19 @@ class TileValue:
 class Tile:
     """One of the four.
 
-    Attributes
-    ----------
-    column
-        As in strides.csv; of stance it is the left leg less the right.
-    values
-        One, or that of each leg.
-    scale
-        Both ends.
-    zone
-        What is drawn grey: cited group, or what 95 of 100 healthy people differ by; None: nothing.
-    goals
-        Values of the goals; `goal` has the first in short, `goal_words` how it was met.
-    why
-        Why there is no value.
+    `zone`: what is drawn grey: cited group, or what 95 of 100 healthy people differ by; None: nothing.
     """
 
-    column: str
+    column: str  # as in strides.csv; of stance it is the left leg less the right
     name: str
     unit: str
-    values: tuple[TileValue, ...]
+    values: tuple[TileValue, ...]  # one, or that of each leg
     change: TileChange
-    scale: tuple[float, float]
+    scale: tuple[float, float]  # both ends
     zone: tuple[float, float] | None = None
-    goals: tuple[float, ...] = ()
+    goals: tuple[float, ...] = ()  # values of the goals; `goal` has the first in short, `goal_words` how it was met
     goal: str = ""
-    why: str = ""
+    why: str = ""  # why there is no value
     goal_words: str = ""
     brief: str = ""
     """The name where room is short; empty: the same."""

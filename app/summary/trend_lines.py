@@ -9,7 +9,7 @@ from app.summary.course_lanes import CourseVisit
 from core.body import Side
 from core.goals import AgreedGoals, GoalOf, is_of_walk
 from core.parameters import KNEE, PUSH_OFF, SPEED, STANCE
-from core.timed.measures import PROTOCOLS
+from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 
@@ -82,6 +82,12 @@ def trend_lines(
             ]
             found.append(TrendLine(column, side, tuple(values), since[0], since[1], first, previous))
     return found
+
+
+def all_lines(visits: Sequence[CourseVisit], condition: str, agreed: AgreedGoals) -> list[TrendLine]:
+    """What the page of the course reports about a condition: its charts and the timed tests."""
+    columns = (*trend_columns(agreed), *COLUMNS.values())
+    return trend_lines(walked_visits(visits, condition), condition, columns, agreed)
 
 
 def _value(part: CourseCondition, column: str, side: Side | None, number: int) -> TrendValue | None:

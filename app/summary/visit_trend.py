@@ -17,18 +17,12 @@ from core.verdicts.sigmas import ComparisonKind
 class Trend:
     """One value for each visit, in the measure's unit; NaN where none may be drawn.
 
-    Attributes
-    ----------
-    places
-        Where the visits lie between the first, 0, and the last, 1.
-    band
-        What the change shown is counted from, less and plus its error; None where the change is not judged.
-    edges
-        The values at the lower and upper edge: all that is drawn, and not less than twice the error, so that
-        what is inside the error is not blown up.
+    `band`: what the change shown is counted from, less and plus its error; None where the change is not judged.
+    `edges`: the values at the lower and upper edge: all that is drawn, and not less than twice the error, so that what
+    is inside the error is not blown up.
     """
 
-    places: tuple[float, ...]
+    places: tuple[float, ...]  # where the visits lie between the first, 0, and the last, 1
     values: tuple[float, ...]
     band: tuple[float, float] | None
     edges: tuple[float, float]

@@ -29,21 +29,11 @@ class WalkedVisit(NamedTuple):
 
 @dataclass(frozen=True)
 class ComparedVisits:
-    """One condition of a patient's visits.
+    """One condition of a patient's visits."""
 
-    Attributes
-    ----------
-    condition
-        Empty: none was stated.
-    parts
-        The visits that have it, two or more, in order of time.
-    without
-        Names of those that have not.
-    """
-
-    condition: str
-    parts: tuple[Part, ...]
-    without: tuple[str, ...]
+    condition: str  # empty: none was stated
+    parts: tuple[Part, ...]  # the visits that have it, two or more, in order of time
+    without: tuple[str, ...]  # names of those that have not
 
 
 def by_condition(

@@ -90,7 +90,7 @@ def strides_in_words(part: Part, side: Side) -> str:
     for reason, count in part.reasons(side).items():
         if reason is not Reason.USED:
             left_out[tr(NAMES["reason"][reason])] += count
-    letter = side[0].upper()
+    letter = side.letter
     if not left_out:
         return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
     reasons = [f"{count} {words}" for words, count in left_out.most_common()] if len(left_out) > 1 else list(left_out)
@@ -104,7 +104,7 @@ def strides_in_words(part: Part, side: Side) -> str:
 
 def few_strides_in_words(part: Part) -> str:
     """What is missing for want of strides; empty where there are enough."""
-    counts = {side[0].upper(): part.strides(side) for side in part.sides}
+    counts = {side.letter: part.strides(side) for side in part.sides}
     without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     stated = []
@@ -125,10 +125,7 @@ def side_cycle(part: Part, joint: Joint) -> SideCycle:
 
 
 def peak_figures(part: Part, reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
-    """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
-
-    The band lies where its source has it; None: none may be shown beside this walk.
-    """
+    """Give rows of peaks per kind of joint, degrees or percent of stride; `reference` None: no band is shown."""
     found: dict[str, tuple[Figure, ...]] = {}
     for kind, rows in ROWS.items():
         joints = {side: joint for side in part.sides if (joint := kind.of(side)) in part.joints}
@@ -187,10 +184,7 @@ def pelvis_in_words(part: Part) -> list[str]:
 def time_distance_figures(
     part: Part, group: ReferenceValues | None, sides_with_band: frozenset[Side]
 ) -> tuple[Figure, ...]:
-    """Rows of time and distance beside the group of this speed, None without one.
-
-    What both legs make together is set beside it only where both may be compared with other people's.
-    """
+    """Give rows of time and distance with the group of this speed; the common rows need both legs comparable."""
     is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(part.sides)
 
     def row(label: str, name: str, unit: str, decimals: int, bands: TwoBands = NO_BANDS) -> Figure:

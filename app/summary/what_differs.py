@@ -3,6 +3,7 @@
 Among alike those with goals come first, then joints, stance and time, the foot, then the one of most errors.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -24,6 +25,8 @@ from core.parameters import BETWEEN_LEGS
 from core.verdicts.measurement_error import Difference, Mark
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of
+
+ZONES, HALVES = 2.3, 1.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,12 @@ def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
     """Every measure of the legs, the largest differences first."""
     rows = [_row(facts, column) for column in BETWEEN_LEGS if any(facts.is_worn(side, column) for side in facts.gait)]
     return tuple(sorted(rows, key=lambda row: _weight(facts, row)))
+
+
+def half_of_strip(found: Difference, reach: float = 1.0) -> float:
+    """Half of a drawing: healthy people's difference, else the interval, with room; all that `reach` times goes to."""
+    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    return max(usual, reach * (abs(found.difference) + found.error))
 
 
 def without_family(rows: Sequence[LegsRow]) -> list[LegsRow]:

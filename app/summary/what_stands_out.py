@@ -22,7 +22,7 @@ from app.summary.measure_sentences import (
 from app.summary.numbers_in_words import band_in_figures, fixed, signed
 from app.summary.panels import HEIGHTS, peak_name
 from app.summary.plain_text import CONDITION_LENGTH, typed
-from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.summary.trend_lines import all_lines, walked_visits
 from app.wording.body import name_of
 from app.wording.dates import date
 from app.wording.measures import name_in_sentence
@@ -41,7 +41,7 @@ from core.parameters import (
     QuantityClass,
 )
 from core.results import ZeroKind
-from core.timed.measures import COLUMNS, PROTOCOLS
+from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Difference, least_error
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of as joint_of_column
@@ -127,10 +127,7 @@ def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candid
 
 
 def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:
-    """What is reported: changes first, then by kind, then what exceeds its error most; one per joint and direction.
-
-    `bands` names the cited groups of the curves and of time and distance, inside a sentence.
-    """
+    """Rank findings: changes first, then kind, then ratio to the error; one per joint and direction."""
     candidates = [
         *_changes(facts, comparison),
         *_since_visits(facts),
@@ -177,16 +174,10 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
             yield _change(facts, column, side, found, stated, topic, Since.CHOSEN)
 
 
-def _course(facts: Facts) -> list[TrendLine]:
-    """What the page of the course reports about the condition that is shown, in the same lines."""
-    walked, agreed = walked_visits(facts.course, facts.condition), facts.part.agreed
-    return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
-
-
 def _since_visits(facts: Facts) -> Iterator[Candidate]:
     """What has changed since the last visit under this condition, and since the first, by the course's judgement."""
     walked = walked_visits(facts.course, facts.condition)
-    for line in _course(facts):
+    for line in all_lines(facts.course, facts.condition, facts.part.agreed):
         for since, found, at in (
             (Since.LAST_VISIT, line.since_last, line.before),
             (Since.FIRST_VISIT, line.since_first, line.first),
@@ -247,7 +238,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
         yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), stated)
     for column in ("stance_percent", "stride_length_m"):
         figure = facts.time_distance[column]
-        for side in facts.sides_with_band.intersection(figure.sides):
+        for side in (one for one in facts.first_and_second if one in facts.sides_with_band and one in figure.sides):
             value = facts.value(side, column)
             if figure.judged_band is None or not math.isfinite(value.mean):
                 continue

@@ -30,13 +30,7 @@ def known_columns() -> dict[str, Columns]:
 
 
 def keep_columns(keys: Sequence[str], columns: Columns) -> None:
-    """Remember what is sent at these ports.
-
-    Raises
-    ------
-    OSError
-        It cannot be written.
-    """
+    """Store what the columns sent at these ports mean; raises OSError where it cannot be written."""
     kept: Mapping[str, Columns] = known_columns() | dict.fromkeys(keys, columns)
     place = _place()
     place.parent.mkdir(parents=True, exist_ok=True)

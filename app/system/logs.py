@@ -65,25 +65,6 @@ def error_report(folder: Path) -> str:
     return "\n".join([*libraries, machine, "", *lines, ""])
 
 
-def log_qt_messages() -> None:
-    """Note that Qt warned, and how gravely; its words may hold a path, so they go to the terminal only."""
-    from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
-
-    levels = {
-        QtMsgType.QtWarningMsg: logging.WARNING,
-        QtMsgType.QtCriticalMsg: logging.ERROR,
-        QtMsgType.QtFatalMsg: logging.CRITICAL,
-    }
-
-    def note(kind: QtMsgType, _context: QMessageLogContext, message: str) -> None:
-        level = levels.get(kind, logging.DEBUG)
-        _log.log(level, "Qt has something to say")
-        if level >= logging.WARNING and sys.stderr is not None:
-            print(message, file=sys.stderr)
-
-    qInstallMessageHandler(note)
-
-
 class NamelessFormatter(logging.Formatter):
     """One record as the text that our source holds, and one line for each exception and each place it came through."""
 

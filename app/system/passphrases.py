@@ -35,10 +35,7 @@ REFUSED = frozenset({Strength.TOO_SHORT, Strength.WEAK})
 
 
 def strength_of(passphrase: str, shortest: int, known: Iterable[str] = ()) -> Strength:
-    """Judge a passphrase; one of fewer than `shortest` letters, or a weak one, is not accepted at all.
-
-    `known`: what anybody would try first, the operator's code and name and the clinic's.
-    """
+    """Rate a passphrase; shorter than `shortest` or weak is refused. `known`: names of operator and clinic."""
     if not passphrase.strip():
         return Strength.NONE
     if len(passphrase.strip()) < shortest:

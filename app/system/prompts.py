@@ -31,10 +31,7 @@ class Prompter:
         self._spoken_s: dict[str, float] = {}
 
     def speak(self, phrase: str) -> None:
-        """Have `phrase` spoken if it is another one than before; empty: there is nothing to do now.
-
-        It may be called as often as the screen is shown: one that was spoken a moment ago has to wait its time.
-        """
+        """Speak `phrase` if it is new; empty: silence. A phrase spoken a moment ago is not repeated yet."""
         if not self.is_on or phrase == self._latest:
             return
         now_s = self._now_s()

@@ -19,6 +19,9 @@ from time import monotonic
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QApplication
 
+if sys.platform == "win32":
+    import winsound
+
 # PulseAudio's, PipeWire's and ALSA's own; the first that is there and states that it played is used from then on
 PLAYERS: Sequence[Sequence[str]] = (
     (("afplay",),) if sys.platform == "darwin" else (("paplay",), ("pw-play",), ("aplay", "-q"))
@@ -159,8 +162,6 @@ def _has_played(command: Sequence[str], is_over: Callable[[], bool] | None) -> b
 def _play_on_windows(file: str, *, is_beside: bool) -> bool:
     """Play a sound to its end; `is_beside`: the call returns at once, and the next sound cuts it off."""
     if sys.platform == "win32":
-        import winsound
-
         try:
             flags = winsound.SND_FILENAME | winsound.SND_NODEFAULT
             winsound.PlaySound(file, flags | winsound.SND_ASYNC if is_beside else flags)

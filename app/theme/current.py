@@ -5,7 +5,7 @@ from dataclasses import replace
 from importlib.resources import files
 
 from PySide6.QtCore import QByteArray, QEvent, Qt
-from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPainter, QPalette
 from PySide6.QtWidgets import QApplication, QLayout, QStyle, QToolTip, QWidget
 
 from app.theme.colours import DARK, LIGHT, Colours
@@ -38,6 +38,18 @@ def scaled(setter: Callable[..., object], *lengths: float) -> None:
     owner = setter.__self__  # type: ignore[attr-defined]  # of a bound method
     owner.setProperty(SCALED, {**(owner.property(SCALED) or {}), setter.__name__: lengths})
     setter(*(px(one) if one else 0 for one in lengths))
+
+
+def on_theme(method: Callable[[], object]) -> None:
+    """Call a method of a widget now and whenever the theme changes, for what it measures by hand."""
+    scaled(method)
+
+
+def smooth_painter(widget: QWidget) -> QPainter:
+    """Give a painter on a widget whose lines have smooth edges."""
+    painter = QPainter(widget)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    return painter
 
 
 def set_dark(is_dark: bool) -> None:
@@ -109,13 +121,7 @@ def _scale_again(one: QWidget | QLayout) -> None:
 
 
 def load_fonts() -> None:
-    """Make the bundled fonts known to Qt.
-
-    Raises
-    ------
-    FileNotFoundError
-        The installation is incomplete.
-    """
+    """Register the bundled fonts with Qt; raises FileNotFoundError where the installation is incomplete."""
     folder = files("resources") / "fonts"
     for name in FONT_FILES:
         QFontDatabase.addApplicationFontFromData(QByteArray((folder / name).read_bytes()))

@@ -27,6 +27,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.theme.ground import GROUND, Ground
 from app.theme.icons import Icon, paint_icon
 from app.theme.motion import duration_ms
 from app.theme.theme import CONTROL_RADIUS, Theme
@@ -50,7 +51,7 @@ BUSY_S = 1.5  # from one end of a bar to the other, where it is not known how lo
 
 
 class ButtonKind(Enum):
-    """What a button is for: what we wish, another way, one beside the matter; on or off; one of a few; any of a few."""
+    """What a button is for: a wish, another way, one beside the matter; on or off; one of a few, any, one label."""
 
     PRIMARY = auto()
     SECONDARY = auto()
@@ -58,6 +59,7 @@ class ButtonKind(Enum):
     TOGGLE = auto()
     SEGMENT = auto()
     CHIP = auto()
+    LABEL = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +87,7 @@ _MEASURES = {
     ButtonKind.QUIET: _Measures(padding=10, text=16, icon=22, gap=8),
     ButtonKind.SEGMENT: _Measures(padding=14, text=14, icon=0, gap=0),
     ButtonKind.CHIP: _Measures(padding=12, text=14, icon=16, gap=4),
+    ButtonKind.LABEL: _Measures(padding=14, text=14, icon=0, gap=8),
 }
 
 
@@ -133,7 +136,9 @@ class ControlStyle(QProxyStyle):
         self, element: Primitive, option: QStyleOption, painter: QPainter, widget: QWidget | None = None
     ) -> None:
         c = self.theme.colours
-        if element is Primitive.PE_PanelLineEdit:
+        if element is Primitive.PE_Widget and widget is not None and isinstance(widget.property(GROUND), Ground):
+            self._paint_ground(widget.property(GROUND), option.rect, painter)
+        elif element is Primitive.PE_PanelLineEdit:
             self._paint_field(option, painter, widget)
         elif element is Primitive.PE_Frame and isinstance(widget, QPlainTextEdit):
             self.theme.paint_box(painter, _framed(option), c.surface, c.control)
@@ -235,7 +240,7 @@ class ControlStyle(QProxyStyle):
             paint_icon(painter, picture, QRectF(x, (rect.height() - icon) / 2, icon, icon), ink)
             x += icon + gap
         if option.text:
-            is_chip = face.kind is ButtonKind.CHIP
+            is_chip = face.kind in (ButtonKind.CHIP, ButtonKind.LABEL)
             is_light = is_chip and not option.state & State.State_On
             painter.setPen(ink)
             painter.setFont(theme.font(measures.text, MEDIUM if is_light else SEMIBOLD))
@@ -292,7 +297,23 @@ class ControlStyle(QProxyStyle):
         painter.setFont(theme.font(12))
         painter.drawText(0, top + height, rect.width(), note_height, CENTRE, face.note)
 
-    # fields, choices, menus, bars
+    # grounds, fields, choices, menus, bars
+
+    def _paint_ground(self, ground: Ground, rect: QRect, painter: QPainter) -> None:
+        theme, inset = self.theme, ground.inset
+        fill, line = (getattr(theme.colours, token) if token else None for token in (ground.fill, ground.line))
+        if ground.edge is None:
+            box = QRectF(rect).adjusted(inset, inset, -inset, -inset)
+            theme.paint_box(painter, box, fill, line, ground.width, ground.radius)
+            return
+        if fill is not None:
+            painter.fillRect(rect, QColor(fill))
+        if line is not None:
+            painter.setPen(theme.pen(line, ground.width))
+            is_above = ground.edge is Qt.Edge.TopEdge
+            painter.drawLine(
+                *((rect.topLeft(), rect.topRight()) if is_above else (rect.bottomLeft(), rect.bottomRight()))
+            )
 
     def _paint_field(self, option: QStyleOption, painter: QPainter, widget: QWidget | None) -> None:
         if not isinstance(option, QStyleOptionFrame) or option.lineWidth <= 0:

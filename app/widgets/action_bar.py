@@ -11,23 +11,21 @@ from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
-    QColor,
     QFontMetrics,
     QMouseEvent,
     QPainter,
-    QPaintEvent,
-    QPalette,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
+from app.widgets.painted import Painted
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.numbers import clock
 from app.wording.translation import tr
 
@@ -37,6 +35,8 @@ PRIMARY_WIDTH = 208
 NOTE_WIDTH = 300  # longer words beside a verb take a second line
 NOTE_AT_LEAST = 170
 DOT = 16
+BAR_GROUND = Ground("surface", "line", edge=Qt.Edge.TopEdge)
+INVERSE = Ground("inv", edge=Qt.Edge.TopEdge)
 
 Row = Sequence[QWidget]
 
@@ -83,19 +83,13 @@ class BarState:
     on_page: tuple[BarAction, ...] = ()
 
 
-class ActionBar(Themed):
-    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut.
-
-    Signals
-    -------
-    pressed
-        The BarAction that is to be run: whether it is, who shows it decides.
-    """
+class ActionBar(QWidget):
+    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut."""
 
     accessible_role = QAccessible.Role.ToolBar
 
     back_pressed = Signal()
-    pressed = Signal(object)
+    pressed = Signal(object)  # the BarAction that is to be run: whether it is, who shows it decides
     sound_pressed = Signal()
     recording_changed = Signal(bool)
 
@@ -116,6 +110,7 @@ class ActionBar(Themed):
         self.primary.clicked.connect(self._on_clicked)
         self.sound.clicked.connect(self.sound_pressed)
         self._show()
+        on_theme(self._arrange)
 
     @property
     def state(self) -> BarState:
@@ -177,16 +172,6 @@ class ActionBar(Themed):
         if event.size().width() != event.oldSize().width():
             self._arrange()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        c = theme.colours
-        is_inverse = self._state.recording is not None
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(c.inv if is_inverse else c.surface))
-        if not is_inverse:
-            painter.setPen(theme.pen(c.line, 1))
-            painter.drawLine(self.rect().topLeft(), self.rect().topRight())
-
     def _show(self) -> None:
         state = self._state
         recording = state.recording
@@ -214,7 +199,9 @@ class ActionBar(Themed):
         self._note.setText(recording.note if recording is not None else state.note)
         for text in (self._title, self._note):
             text.setVisible(bool(text.text()))
-        self._colour()
+        self._title.set_tone("inv_ink" if is_inverse else "ink")
+        self._note.set_tone("inv_ink2" if is_inverse else "ink2")
+        set_ground(self, INVERSE if is_inverse else BAR_GROUND)
         self._arrange()
         if had_focus and not any(button.hasFocus() for button in self.tab_order):
             self.focus()
@@ -230,21 +217,8 @@ class ActionBar(Themed):
             for part in (self._clock, self.back, *self._quiet, *words, *verbs):
                 part.raise_()  # in reading order: Qt lists the parts as they are stacked
 
-    def _colour(self) -> None:
-        c = current_theme().colours
-        is_inverse = self._state.recording is not None
-        for text, colour in (
-            (self._title, c.inv_ink if is_inverse else c.ink),
-            (self._note, c.inv_ink2 if is_inverse else c.ink2),
-        ):
-            palette = text.palette()
-            palette.setColor(QPalette.ColorRole.WindowText, QColor(colour))
-            text.setPalette(palette)
-        self.update()
-
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -282,7 +256,6 @@ class ActionBar(Themed):
 
     def _fits(self, width: int) -> bool:
         """Return whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
-        px = current_theme().px
         texts = [text for text in (self._title, self._note) if text.text()]
         widest = max((text.fontMetrics().horizontalAdvance(text.text()) for text in texts), default=0)
         return width >= min(widest, px(NOTE_AT_LEAST)) and self._words_height(width) <= px(BAR - 8)
@@ -293,7 +266,6 @@ class ActionBar(Themed):
 
     def _narrowed(self, box: QRect) -> QRect:
         """Give lines of a length that is read at a glance: two short ones rather than a long one."""
-        px = current_theme().px
         if self._state.recording is not None:
             return box
         for widest in (NOTE_WIDTH, 2 * NOTE_WIDTH):
@@ -317,10 +289,6 @@ class ActionBar(Themed):
         assert isinstance(button, VerbButton)
         self.pressed.emit(button.verb)
 
-    def _apply_theme(self) -> None:
-        self._colour()
-        self._arrange()
-
 
 _NOTHING = BarAction("", lambda: None)
 
@@ -328,10 +296,7 @@ _NOTHING = BarAction("", lambda: None)
 class VerbButton(Button):
     """A button whose word, key and kind follow what can be done now; hidden while it is nothing.
 
-    Attributes
-    ----------
-    verb
-        What it does, nothing while it is hidden; its key holds though there may be no room for the cap.
+    `verb`: what it does, nothing while it is hidden; its key holds though there may be no room for the cap.
     """
 
     def __init__(self, parent: QWidget, is_primary: bool = False) -> None:
@@ -378,7 +343,7 @@ class VerbButton(Button):
         return size
 
 
-class _Clock(QWidget):
+class _Clock(Painted):
     """The dot of a recording and its time. The dot does not blink."""
 
     def __init__(self, parent: QWidget) -> None:
@@ -403,14 +368,11 @@ class _Clock(QWidget):
         widest = QFontMetrics(theme.font(40, SEMIBOLD)).horizontalAdvance("000:00")
         return QSize(self._text_left() + widest, theme.px(HEIGHT))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
         side = theme.px(DOT * 24 / 14)  # the icon's dot is 14 of its 24
         dot = QRectF(theme.px(12) - side / 2, (self.height() - side) / 2, side, side)
         paint_icon(painter, Icon.RECORDING, dot, theme.colours.inv_ink)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _text_left(self) -> int:
         return px(36)

@@ -1,14 +1,15 @@
 """What happened and what to do, in the page and never in a dialog. It stays until it is dismissed or made good."""
 
 from PySide6.QtCore import QPointF, QRectF, Signal
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 HEIGHT = 64
@@ -16,7 +17,7 @@ MARK = 36
 ABOVE = 12  # clear of the header; gone together with the banner
 
 
-class Banner(Themed):
+class Banner(Painted):
     """Hidden until it is given something to show."""
 
     accessible_role = QAccessible.Role.AlertMessage
@@ -31,19 +32,12 @@ class Banner(Themed):
         self._next = Text(size=14, tone="caution_ink", wraps=True)
         self.act = Button("", ButtonKind.SECONDARY, height=44)
         self.dismiss = Button(tr("Dismiss"), ButtonKind.QUIET, height=44)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addStretch(1)
-        words.addWidget(self._what)
-        words.addWidget(self._next)
-        words.addStretch(1)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(words, 1)
-        self._row.addWidget(self.act)
-        self._row.addWidget(self.dismiss)
+        words = lay_out(QVBoxLayout(), 1, self._what, self._next, 1, spacing=0)
+        row = QHBoxLayout(self)
+        lay_out(row, (words, 1), self.act, self.dismiss, margins=(16 + MARK + 12, ABOVE + 8, 8, 8), spacing=16)
         self.act.clicked.connect(self.acted)
         self.dismiss.clicked.connect(self._on_dismiss_clicked)
-        self._apply_theme()
+        scaled(self.setMinimumHeight, HEIGHT + ABOVE)
         self.hide()
 
     @property
@@ -61,10 +55,9 @@ class Banner(Themed):
         self.show()
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(0.5, px(ABOVE) + 0.5, -0.5, -0.5)
         theme.paint_box(painter, box, c.caution, c.caution_edge, 1)
         centre = QPointF(px(16 + MARK / 2), (self.height() + px(ABOVE)) / 2)
@@ -78,9 +71,3 @@ class Banner(Themed):
     def _on_dismiss_clicked(self) -> None:
         self.hide()
         self.dismissed.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(16 + MARK + 12), px(ABOVE + 8), px(8), px(8))
-        self._row.setSpacing(px(16))
-        self.setMinimumHeight(px(HEIGHT + ABOVE))

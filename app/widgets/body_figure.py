@@ -8,12 +8,13 @@ from collections.abc import Mapping
 from enum import Enum, auto
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPainterPath, QPaintEvent, QPolygonF, QTransform
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPainterPath, QPolygonF, QTransform
+from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.theme.theme import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD
 from app.wording.body import name_of
 from app.wording.translation import tr
@@ -81,7 +82,7 @@ def placing_of_legs(rect: QRectF) -> QTransform:
     return _placing(LEGS, rect, is_from_behind=False)
 
 
-class BodyFigure(QWidget):
+class BodyFigure(Painted):
     """The whole person with large R and L, or the legs alone with their joints marked."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -156,7 +157,6 @@ class BodyFigure(QWidget):
         return self._placed().map(body_shapes().points[joint])
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(200), px(440)) if self._is_legs_only else QSize(px(300), px(520))
 
     def minimumSizeHint(self) -> QSize:
@@ -166,10 +166,8 @@ class BodyFigure(QWidget):
             return QSize(max(sentence, theme.px(170)), theme.px(180))
         return QSize(max(sentence, theme.px(250)), theme.px(300))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         place = self._placed()
         if self._is_legs_only:
             paint_legs(painter, self._room(), theme, self._emphasised, self._worn, self._is_from_behind)
@@ -190,7 +188,6 @@ class BodyFigure(QWidget):
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, self._sentence())
 
     def _room(self) -> QRectF:
-        px = current_theme().px
         room = QRectF(0, px(4), self.width(), self.height() - px(4 + SENTENCE_ROOM))
         if self._beside:
             part = LEGS if self._is_legs_only else WHOLE

@@ -29,15 +29,7 @@ class BodyShapes:
 
 @cache
 def body_shapes() -> BodyShapes:
-    """Read the drawing.
-
-    Raises
-    ------
-    FileNotFoundError
-        The installation is incomplete.
-    ValueError
-        A path of the drawing uses a command other than absolute M, L, C and Z.
-    """
+    """Read the drawing; raises FileNotFoundError where the installation is incomplete."""
     # our own file, never a user's
     root = ElementTree.fromstring((files("resources") / "images" / "body.svg").read_text(encoding="utf-8"))
     outlines = {path.attrib["id"]: read_path(path.attrib["d"]) for path in root.iter(f"{SVG}path")}
@@ -49,13 +41,7 @@ def body_shapes() -> BodyShapes:
 
 
 def read_path(text: str) -> QPainterPath:
-    """Build the outline that an SVG path's `d` describes, of absolute M, L, C and Z.
-
-    Raises
-    ------
-    ValueError
-        Another command, or one with too few numbers.
-    """
+    """Build the outline of an SVG path's `d`; ValueError for commands other than absolute M, L, C and Z."""
     path = QPainterPath()
     tokens = TOKEN.findall(text)
     while tokens:

@@ -13,7 +13,7 @@ from app.theme.style import ButtonKind as ButtonKind
 from app.wording.translation import tr
 
 HEIGHT = 48
-CHOICES = (ButtonKind.SEGMENT, ButtonKind.CHIP)  # Enter belongs to the page they are on
+CHOICES = (ButtonKind.SEGMENT, ButtonKind.CHIP, ButtonKind.LABEL)  # Enter belongs to the page they are on
 
 
 class Button(QPushButton):

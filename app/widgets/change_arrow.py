@@ -1,12 +1,12 @@
 """The arrow before a change of the patient: filled beyond measurement error, outlined within."""
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPolygonF
 
 from app.summary.progress_words import Arrow
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.theme import Theme
+from app.widgets.painted import Painted
 
 ARROW = 10  # px, wide and high
 
@@ -25,17 +25,13 @@ def paint_change_arrow(painter: QPainter, box: QRectF, arrow: Arrow, theme: Them
     painter.restore()
 
 
-class ChangeArrow(QWidget):
+class ChangeArrow(Painted):
     """The arrow beside words that state the change, so a screen reader passes over it."""
 
     def __init__(self, arrow: Arrow) -> None:
         super().__init__()
         self.arrow = arrow
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, ARROW + 2, ARROW + 2)
 
-    def sizeHint(self) -> QSize:
-        side = px(ARROW + 2)
-        return QSize(side, side)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        paint_change_arrow(QPainter(self), QRectF(self.rect()), self.arrow, current_theme())
+    def draw(self, painter: QPainter) -> None:
+        paint_change_arrow(painter, QRectF(self.rect()), self.arrow, current_theme())

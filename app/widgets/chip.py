@@ -1,18 +1,19 @@
 """The chip of a leg as a widget, alone or before its line."""
 
 from PySide6.QtCore import QRectF, QSize
-from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QPainter
+from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.leg_chip import CHIP, paint_chip
+from app.widgets.painted import Painted
 from app.wording.translation import tr
 from core.body import Side
 
 LINE = 24
 
 
-class Chip(QWidget):
+class Chip(Painted):
     """The chip alone, before words about that leg."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -20,7 +21,7 @@ class Chip(QWidget):
     def __init__(self, side: Side) -> None:
         super().__init__()
         self._side = side
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, CHIP, CHIP)
         self.setAccessibleName(leg_name(side))
 
     @property
@@ -33,15 +34,11 @@ class Chip(QWidget):
             self.setAccessibleName(leg_name(side))
             self.update()
 
-    def sizeHint(self) -> QSize:
-        chip = px(CHIP)
-        return QSize(chip, chip)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        paint_chip(QPainter(self), QRectF(self.rect()), self._side, current_theme())
+    def draw(self, painter: QPainter) -> None:
+        paint_chip(painter, QRectF(self.rect()), self._side, current_theme())
 
 
-class SideKey(QWidget):
+class SideKey(Painted):
     """Chip and line of one leg: the key to the curves."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -53,13 +50,10 @@ class SideKey(QWidget):
         self.setAccessibleName(leg_name(side))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(CHIP) + px(8) + px(LINE), px(CHIP))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         chip = theme.px(CHIP)
         paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._side, theme)
         painter.setPen(theme.side_pen(self._side, 2))

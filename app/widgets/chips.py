@@ -2,20 +2,18 @@
 
 from collections.abc import Iterable, Sequence
 
-from PySide6.QtCore import QRect, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QAbstractButton, QSizePolicy
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QAccessible
+from PySide6.QtWidgets import QAbstractButton, QWidget
 
-from app.theme.current import current_theme, px
-from app.widgets.button import Button, ButtonKind
-from app.widgets.themed import Themed
+from app.theme.current import on_theme
+from app.widgets.button import ButtonKind
+from app.widgets.wrapping import WrappedButton, Wrapping
 
 HEIGHT = 44
-GAP = 8
-STEPS = {Qt.Key.Key_Right: 1, Qt.Key.Key_Down: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_Up: -1}
 
 
-class Chips(Themed):
+class Chips(Wrapping):
     """`options` are key and word of each; they wrap into as many lines as they need.
 
     Parameters
@@ -29,17 +27,14 @@ class Chips(Themed):
     turned = Signal()  # by the user
 
     def __init__(self, name: str, options: Iterable[tuple[str, str]], rivals: tuple[str, str] | None = None) -> None:
-        super().__init__()
+        super().__init__(HEIGHT)
         self._rivals = rivals
-        self._chips: dict[str, _Chip] = {}
+        self._chips: dict[str, WrappedButton] = {}
         self.setAccessibleName(name)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         for key, word in options:
             self._add(key, word)
         self._let_tab_reach(self.buttons[0])
-
-    def _apply_theme(self) -> None:
-        self._arrange()
+        on_theme(self.arrange)
 
     @property
     def chosen(self) -> tuple[str, ...]:
@@ -50,6 +45,9 @@ class Chips(Themed):
     def buttons(self) -> list[QAbstractButton]:
         return list(self._chips.values())
 
+    def parts(self) -> list[QAbstractButton]:
+        return self.buttons
+
     def choose(self, keys: Sequence[str]) -> None:
         """Turn exactly these on; one that is not among the options becomes one, in its own word."""
         for key in keys:
@@ -57,28 +55,16 @@ class Chips(Themed):
                 self._add(key, key)
         for key, chip in self._chips.items():
             chip.setChecked(key in keys)
-        self._arrange()
+        self.arrange()
 
-    def sizeHint(self) -> QSize:
-        width = max(self.width(), self.minimumSizeHint().width())
-        return QSize(width, self._height_for(width))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(max(chip.sizeHint().width() for chip in self._chips.values()), px(HEIGHT))
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._arrange()
-
-    def step(self, chip: "_Chip", by: int) -> None:
-        """Go on to the chip before or after, and round at the end."""
-        chips = list(self._chips.values())
-        to = chips[(chips.index(chip) + by) % len(chips)]
+    def step(self, part: QWidget, by: int) -> None:
+        chips: list[QWidget] = [*self._chips.values()]
+        to = self.buttons[(chips.index(part) + by) % len(chips)]
         self._let_tab_reach(to)
         to.setFocus(Qt.FocusReason.TabFocusReason)
 
     def _add(self, key: str, word: str) -> None:
-        chip = _Chip(word, self)
+        chip = WrappedButton(word, ButtonKind.CHIP, HEIGHT, self)
         chip.clicked.connect(self._on_clicked)
         chip.show()
         self._chips[key] = chip
@@ -88,53 +74,13 @@ class Chips(Themed):
         for other in self._chips.values():
             other.setFocusPolicy(Qt.FocusPolicy.StrongFocus if other is chip else Qt.FocusPolicy.ClickFocus)
 
-    def _flow(self, width: int) -> list[QRect]:
-        """Where each chip lies in lines of `width`."""
-        px = current_theme().px
-        return flow([chip.sizeHint().width() for chip in self._chips.values()], width, px(GAP), px(HEIGHT))
-
-    def _height_for(self, width: int) -> int:
-        return self._flow(width)[-1].bottom() + 1
-
-    def _arrange(self) -> None:
-        for chip, place in zip(self._chips.values(), self._flow(self.width()), strict=True):
-            chip.setGeometry(place)
-        self.setFixedHeight(self._height_for(self.width()))  # layouts in a scroll area ask for no height of a width
-        self.updateGeometry()
-
     def _on_clicked(self) -> None:
         clicked = self.sender()
-        assert isinstance(clicked, _Chip)
+        assert isinstance(clicked, WrappedButton)
         self._let_tab_reach(clicked)
         key = next(key for key, chip in self._chips.items() if chip is clicked)
         if self._rivals and key in self._rivals and clicked.isChecked():
             other = self._rivals[1] if key == self._rivals[0] else self._rivals[0]
             self._chips[other].setChecked(False)
-        self._arrange()
+        self.arrange()
         self.turned.emit()
-
-
-def flow(required: Iterable[int], width: int, gap: int, height: int) -> list[QRect]:
-    """Where boxes as wide as `required` lie, in lines of `width`; all in pixels."""
-    places: list[QRect] = []
-    x = y = 0
-    for box in required:
-        if x and x + box > width:
-            x, y = 0, y + height + gap
-        places.append(QRect(x, y, box, height))
-        x += box + gap
-    return places
-
-
-class _Chip(Button):
-    def __init__(self, word: str, group: Chips) -> None:
-        super().__init__(word, ButtonKind.CHIP, height=HEIGHT, parent=group)
-        self._group = group
-        self.setCheckable(True)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        by = STEPS.get(Qt.Key(event.key()))
-        if by is None:
-            super().keyPressEvent(event)
-            return
-        self._group.step(self, by)

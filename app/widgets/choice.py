@@ -1,8 +1,9 @@
 """One choice out of many, folded away until it is asked for."""
 
 import sys
+from collections.abc import Iterable
 
-from PySide6.QtCore import QEvent, QPoint, QSize, Qt
+from PySide6.QtCore import QEvent, QPoint, QSignalBlocker, QSize, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
@@ -25,11 +26,18 @@ class Choice(QComboBox):
         self.ensurePolished()  # its font, and so its size, is the style's
         self.currentIndexChanged.connect(self.updateGeometry)
 
-    def let_shrink(self, least: float, most: float) -> None:
-        """For words that somebody typed, of any length: cut them short where room is short, their whole in a tooltip.
+    def offer(self, lines: Iterable[tuple[str, object]], chosen: object, otherwise: int = 0) -> None:
+        """Offer other lines, each its words and its data; `chosen` is in force, or another line. Nobody is notified."""
+        with QSignalBlocker(self):
+            self.clear()
+            for words, data in lines:
+                self.addItem(words, data)
+            found = self.findData(chosen)
+            self.setCurrentIndex(found if found >= 0 else otherwise)
+        self.updateGeometry()
 
-        Nothing is cut in fewer than `least` px, and the box grows to no more than `most`.
-        """
+    def let_shrink(self, least: float, most: float) -> None:
+        """Shorten long typed texts, with a tooltip; not below `least` px, and the box not above `most` px."""
         self._least, self._most = least, most
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Fixed)
         self.updateGeometry()
@@ -64,11 +72,7 @@ class Choice(QComboBox):
         return super().event(event)
 
     def showPopup(self) -> None:
-        """Open below the box, above it where there is no room below, and as the style does where there is none at all.
-
-        The style lays the chosen line over the box, so that what comes before it covers what is above: the tabs.
-        What is cut in the box is whole in its list.
-        """
+        """Open below the box, or above it without room below; the style's place covers what is above."""
         if self._least is not None:
             widest = self.screen().availableGeometry().width()
             self.view().setMinimumWidth(min(self.view().sizeHintForColumn(0), widest))

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
@@ -40,6 +40,7 @@ class DetailButton(PaintedButton):
         self._key, self._shown = key, DetailText(Verdict.READ, "")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        scaled(self.setMinimumSize, LEAST_WIDTH, HEIGHT)
         self.setAccessibleDescription(tr("Key {key}").format(key=key))
 
     @property
@@ -55,13 +56,6 @@ class DetailButton(PaintedButton):
     @property
     def _details(self) -> str:
         return self._shown.details or tr("Details")
-
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_WIDTH), px(HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def texts(self) -> list[PaintedText]:
         """What is painted, and where."""

@@ -1,22 +1,23 @@
 """A figure that is read from across the room: every digit in a cell of its own, so that nothing trembles."""
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD
-from app.widgets.themed import Themed
 
 UNIT_SHARE = 0.3  # of the figure's size
 
 
-class Digits(Themed):
+class Digits(Painted):
     """`widest` is the longest text that is to come, for which the size is made to fit; `size` in px is the most."""
 
     def __init__(self, size: float, widest: str, unit: str = "", parent: QWidget | None = None):
         super().__init__(parent)
         self._most, self._widest, self._unit, self._text = size, widest, unit, ""
+        scaled(self.setMinimumSize, 120, 72)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -30,11 +31,7 @@ class Digits(Themed):
             self._text, self._unit, self._widest = shown
             self.update()
 
-    def minimumSizeHint(self) -> QSize:
-        return QSize(px(120), px(72))
-
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(self._most * 2), px(self._most))
 
     def cells(self) -> list[tuple[str, QRectF]]:
@@ -49,9 +46,8 @@ class Digits(Themed):
             x += width
         return found
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, size = current_theme(), self._size()
-        painter = QPainter(self)
         painter.setPen(QColor(theme.colours.ink))
         painter.setFont(theme.font(size, SEMIBOLD))
         end = 0.0
@@ -65,9 +61,6 @@ class Digits(Themed):
             painter.setFont(font)
             painter.setPen(QColor(theme.colours.ink2))
             painter.drawText(QRectF(end + theme.px(12), baseline - small.ascent(), 400, small.height()), 0, self._unit)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
 
     def _size(self) -> float:
         """As large as the widest text leaves room for, in logical px."""

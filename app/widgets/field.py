@@ -3,7 +3,7 @@
 import math
 import unicodedata
 
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
@@ -16,15 +16,15 @@ from PySide6.QtGui import (
     QPalette,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.theme.icons import Icon
 from app.theme.leg_chip import paint_chip
 from app.theme.style import IS_WRONG
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from app.wording.translation import short_figure, tr, within_sentence
 from core.body import Side
@@ -37,7 +37,7 @@ KEPT_CLEAR = 3  # px: Qt's own, on either side of the text
 TEXT, SIDE_TEXT = 16, 20  # a side's fields hold one figure each, read beside the patient
 
 
-class Field(Themed):
+class Field(QWidget):
     """Keeps what was typed, right or wrong.
 
     Parameters
@@ -87,16 +87,9 @@ class Field(Themed):
             self._box.setEchoMode(QLineEdit.EchoMode.Password)
         self.setFocusProxy(self._box)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        self._above = QHBoxLayout()
-        self._above.addWidget(self._caption, 1)
-        self._above.addWidget(self._optional, 0, Qt.AlignmentFlag.AlignBottom)
-        self._below = QHBoxLayout()
-        self._below.addWidget(self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._below.addWidget(self._wrong, 1)
-        self._column = QVBoxLayout(self)
-        self._column.addLayout(self._above)
-        self._column.addWidget(self._box)
-        self._column.addLayout(self._below)
+        above = lay_out(QHBoxLayout(), (self._caption, 1), (self._optional, 0, Qt.AlignmentFlag.AlignBottom), spacing=8)
+        below = lay_out(QHBoxLayout(), (self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop), (self._wrong, 1), spacing=8)
+        lay_out(QVBoxLayout(self), above, self._box, below, margins=0, spacing=6)
         self._caption.setVisible(has_label)  # not before it has a parent: alone it would be a window
         self._optional.setVisible(has_label and is_optional)
         self._make_room("")
@@ -105,7 +98,6 @@ class Field(Themed):
         self._box.editingFinished.connect(self._on_editing_finished)
         self.set_unit(unit)
         self.set_wrong("")
-        self._apply_theme()
 
     @property
     def line_edit(self) -> QLineEdit:
@@ -187,13 +179,6 @@ class Field(Themed):
     def _on_editing_finished(self) -> None:
         self._is_pending = False
         self.committed.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(px(6))
-        self._above.setSpacing(px(8))
-        self._below.setSpacing(px(8))
 
 
 def one_line(text: str) -> str:
@@ -277,7 +262,7 @@ class _Box(QLineEdit):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         if side is not None:
             self.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     def set_unit(self, unit: str) -> None:
         self.unit = unit
@@ -300,11 +285,6 @@ class _Box(QLineEdit):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # who scrolls past must not change a number
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)

@@ -6,9 +6,10 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import SEVERITY_ICONS, Icon
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.findings import sentence
 from app.wording.translation import later, tr
@@ -35,6 +36,7 @@ class FindingsList(QScrollArea):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setAccessibleName(tr("Findings"))
+        scaled(self.setMinimumSize, *LEAST_SIZE)
 
     def show_findings(self, findings: Sequence[Finding]) -> None:
         findings = [one for one in findings if one.key not in USUAL]
@@ -53,11 +55,7 @@ class FindingsList(QScrollArea):
         self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or tr(NOTHING))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return self.minimumSize()
 
 
 class FindingRow(QWidget):
@@ -70,12 +68,9 @@ class FindingRow(QWidget):
         what, then = _in_two(text)
         self.setAccessibleName(f"{tr(SEVERITY_WORDS[severity])}: {text}")
         row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(px(12))
-        row.addWidget(IconMark(icon), 0, Qt.AlignmentFlag.AlignTop)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(Text(what, weight=SEMIBOLD, wraps=True))
+        scaled(row.setSpacing, 12)
+        lay_out(row, (IconMark(icon), 0, Qt.AlignmentFlag.AlignTop), margins=0)
+        words = lay_out(QVBoxLayout(), Text(what, weight=SEMIBOLD, wraps=True), spacing=0)
         if then:
             words.addWidget(Text(then, tone="ink2", wraps=True))
         row.addLayout(words, 1)

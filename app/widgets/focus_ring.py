@@ -1,19 +1,20 @@
 """The ring round whatever has the focus, 3 px outside it, where a control cannot paint for itself."""
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QRectF, Qt
-from PySide6.QtGui import QPainter, QPaintEvent, QRegion
+from PySide6.QtGui import QPainter, QRegion
 from PySide6.QtWidgets import QAbstractScrollArea, QApplication, QWidget
 from shiboken6 import isValid
 
 from app.theme.current import current_theme, px
 from app.theme.theme import CONTROL_RADIUS
+from app.widgets.painted import Painted
 
 DISTANCE = 3
 WIDTH = 2
 NO_RING = "has_no_focus_ring"  # property of a region that is read and not worked: its size means nothing
 
 
-class FocusRing(QWidget):
+class FocusRing(Painted):
     """Lies over all of `window` and follows the focus inside it."""
 
     def __init__(self, window: QWidget) -> None:
@@ -27,11 +28,11 @@ class FocusRing(QWidget):
             app.focusChanged.connect(self._on_focus_changed)
         self.hide()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         half = WIDTH * theme.scale / 2
         box = QRectF(self.rect()).adjusted(half, half, -half, -half)
-        theme.paint_box(QPainter(self), box, None, theme.colours.ink, WIDTH, CONTROL_RADIUS + DISTANCE)
+        theme.paint_box(painter, box, None, theme.colours.ink, WIDTH, CONTROL_RADIUS + DISTANCE)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         moved = (QEvent.Type.Move, QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Hide)

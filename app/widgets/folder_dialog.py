@@ -12,11 +12,7 @@ VISITED = ("FileDialog/history", "FileDialog/lastVisited")  # as Qt has them, fo
 
 
 def keep_no_visited_folders() -> None:
-    """Let Qt not write down which folders its dialogs were in: their names may hold a patient's code.
-
-    To be called at the start and at the end. Where Qt keeps it in a file, from then on it has none; where it is the
-    system's registry or its like, what is there is removed.
-    """
+    """Keep Qt from storing visited folders, whose names may hold patient codes; call at start and at exit."""
     if sys.platform in ("win32", "darwin"):
         own = QSettings(QSettings.Scope.UserScope, "QtProject")
         for name in VISITED:
@@ -67,10 +63,7 @@ def ask_for_new_file(
     on_chosen: Callable[[str], None],
     filters: Sequence[str] = (),
 ) -> QFileDialog:
-    """Open a dialog for a file that is to be written; what is typed without a suffix gets that of `proposed`.
-
-    `proposed` may be given by the place that is shown first.
-    """
+    """Open a save dialog; a name without suffix gets that of `proposed`, which may depend on the first folder."""
     dialog = QFileDialog(parent, title)
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
     if not isinstance(proposed, str):

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
@@ -100,11 +100,7 @@ def gauge_face(joint: Joint, found: ExcitationState | None, required: Required, 
 
 
 def _is_loose(joint: Joint, found: ExcitationState, required: Required) -> bool:
-    """Whether a joint that is one axis by construction turns across it as living ones do.
-
-    An axis that is merely not certain yet does not make it so, and of an ankle's, which walking finds, nothing is
-    known here.
-    """
+    """Check whether a knee that is one axis by construction turns across it as much as a human knee does."""
     floor_rad = math.sqrt(max(found.axis_sd_with_floor_rad**2 - found.axis_sd_rad**2, 0.0))
     return required.is_hinge and joint.is_knee and floor_rad > AXIS_FLOOR_HUMAN_RAD
 
@@ -146,9 +142,9 @@ class Gauge(QWidget):
         super().__init__()
         self._joint = joint
         self._face = GaugeFace()
-        self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._name()
+        self.set_compact(is_compact=False)
 
     @property
     def face(self) -> GaugeFace:
@@ -167,21 +163,18 @@ class Gauge(QWidget):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._refresh()
+        scaled(self.setMinimumSize, 300 if is_compact else 330, 112)
+        self.updateGeometry()
+        self.update()
 
     def sizeHint(self) -> QSize:
         return (COMPACT_CARD if self._is_compact else CARD) * current_theme().scale
-
-    def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(300 if self._is_compact else 330), px(112))
 
     @property
     def is_brief(self) -> bool:
         """Whether it is compact, or too low for all of its words under each other, as below a banner."""
         if self._is_compact:
             return True
-        px = current_theme().px
         if self.height() < px(BLOCK + 2 * LEAST_ROUND):
             return True
         width = self._words_box(self._ring()).width()
@@ -213,7 +206,6 @@ class Gauge(QWidget):
 
     def _ring(self) -> QRectF:
         """The square of the ring on a full card."""
-        px = current_theme().px
         grow = min(self.width() / px(CARD.width()), self.height() / px(CARD.height()))
         middle = px(MIDDLE) * min(max(grow, 0.8), 1.3)
         room = min(self.height() - 2 * px(MARGIN), 2 * middle - 2 * px(MARGIN))
@@ -223,7 +215,6 @@ class Gauge(QWidget):
 
     def _words_box(self, ring: QRectF) -> QRectF:
         """Where the words of a full card are, beside its ring."""
-        px = current_theme().px
         words = QRectF(px(PADDING), (self.height() - px(BLOCK - 4)) / 2, self.width() - 2 * px(PADDING), px(BLOCK))
         if self._joint.side is Side.RIGHT:
             words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))
@@ -454,10 +445,6 @@ class Gauge(QWidget):
                 parts.append(tr("under {limit} required").format(limit=measure.required))
         parts.append(face.note or (tr("move now") if face.state is GaugeState.NOW else state_word(face.state)))
         self.setAccessibleName(", ".join(parts))
-
-    def _refresh(self) -> None:
-        self.updateGeometry()
-        self.update()
 
 
 _ICONS: dict[GaugeState, Icon | None] = {

@@ -1,16 +1,17 @@
 """Header line at the top of every page: whose session is on the screen, and whether it is real."""
 
-from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtCore import QPoint, QPointF, QRect, QSize, Qt
+from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
+from app.widgets.painted import Painted
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.strip_button import StripButton
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.body import Side
 
@@ -19,7 +20,7 @@ COMPACT_HEIGHT = 48
 FACTS_AT_LEAST = 120  # narrower, the lines break after every word
 
 
-class Header(Themed):
+class Header(QWidget):
     """With the rail beside it, it needs neither mark nor name; `fold` and `stopwatch` are hidden until they are used.
 
     Where all does not fit into one line, what is at the right moves to a second.
@@ -28,6 +29,7 @@ class Header(Themed):
     def __init__(self, has_mark: bool = True) -> None:
         super().__init__()
         self._has_mark, self._is_compact = has_mark, False
+        set_ground(self, Ground("surface", "line", edge=Qt.Edge.BottomEdge))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self._mark = ProductMark()
         self._name = Text("Gaitwright", size=18, weight=SEMIBOLD)
@@ -46,7 +48,7 @@ class Header(Themed):
         self.fold.resized.connect(self._arrange)
         self._shown: tuple[str, str, bool] | None = None
         self.show_session("", "", is_simulated=False)
-        self._apply_theme()
+        on_theme(self._arrange)
 
     def show_session(self, code: str, facts: str, is_simulated: bool) -> None:
         """Show the patient's code and what the clinic typed; without a session, the program's name."""
@@ -84,24 +86,16 @@ class Header(Themed):
         if event.size().width() != event.oldSize().width():
             self._arrange()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.surface))
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        painter.drawLine(self.rect().bottomLeft(), self.rect().bottomRight())
-
     def _arrange(self) -> None:
-        px = current_theme().px
         margin, gap = side_margin(self.width(), current_theme()), px(16)
         line = px(COMPACT_HEIGHT if self._is_compact else HEIGHT)
         room = max(self.width(), px(LEAST)) - 2 * margin
         left = [widget for widget in self._left if not widget.isHidden()]
         right = [widget for widget in self._right if not widget.isHidden()]
         facts = self.facts.fontMetrics().horizontalAdvance(self.facts.text()) + px(2) if self.facts in left else 0
-        others = sum(widget.sizeHint().width() for widget in left if widget is not self.facts)
+        others = sum(_size(widget).width() for widget in left if widget is not self.facts)
         others += gap * max(len(left) - 1, 0)
-        taken = sum(widget.sizeHint().width() + gap for widget in right)
+        taken = sum(_size(widget).width() + gap for widget in right)
         is_one_line = others + min(facts, px(FACTS_AT_LEAST)) + taken <= room
         free = room - others - (taken if is_one_line else 0)
         has_own_line = facts > 0 and free < min(facts, px(FACTS_AT_LEAST))  # below the rest, from edge to edge
@@ -113,7 +107,7 @@ class Header(Themed):
         for widget in left:
             if widget is self.facts and has_own_line:
                 continue
-            size = QSize(width, high) if widget is self.facts else widget.sizeHint()
+            size = QSize(width, high) if widget is self.facts else _size(widget)
             widget.setGeometry(QRect(QPoint(x, top + (height - size.height()) // 2), size))
             x += size.width() + gap
         if has_own_line:
@@ -128,32 +122,27 @@ class Header(Themed):
         for row in rows:
             x = margin + room
             for widget in reversed(row):
-                size = widget.sizeHint()
+                size = _size(widget)
                 x -= size.width()
                 widget.setGeometry(QRect(QPoint(x, top + (height - size.height()) // 2), size))
                 x -= gap
             top += height
         self.setFixedHeight(top + px(4))
 
-    def _apply_theme(self) -> None:
-        self._arrange()
+
+def _size(widget: QWidget) -> QSize:
+    return widget.sizeHint().expandedTo(widget.minimumSize())
 
 
-class ProductMark(QWidget):
+class ProductMark(Painted):
     """The program's mark: two legs, left solid, right dashed."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, 28, 28)
 
-    def sizeHint(self) -> QSize:
-        side = px(28)
-        return QSize(side, side)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         unit = self.width() / 24
         hip = QPointF(12.5 * unit, 2.5 * unit)
         for side, foot in ((Side.RIGHT, 3.5), (Side.LEFT, 20.5)):  # it faces you: the right leg is at your left
@@ -171,15 +160,5 @@ class Tag(Text):
     def __init__(self, text: str) -> None:
         super().__init__(text, size=13, weight=SEMIBOLD, tone="caution_ink")
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        c, painter = current_theme().colours, QPainter(self)
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        current_theme().paint_box(painter, box, c.caution, c.caution_edge, radius=CHIP_RADIUS)
-        painter.end()
-        super().paintEvent(event)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self.setContentsMargins(px(10), px(4), px(10), px(4))
+        set_ground(self, Ground("caution", "caution_edge", 1.25, CHIP_RADIUS, inset=1))
+        scaled(self.setContentsMargins, 10, 4, 10, 4)

@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter
+from PySide6.QtWidgets import QSizePolicy
 
 from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import CARD_RADIUS
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import clock
 from app.wording.translation import tr
@@ -32,7 +33,7 @@ class Hint:
     phrase: str = ""
 
 
-class HintBand(QWidget):
+class HintBand(Painted):
     accessible_role = QAccessible.Role.Note
 
     def __init__(self) -> None:
@@ -40,7 +41,7 @@ class HintBand(QWidget):
         self._hint = Hint("")
         self._elapsed, self._usual = "", ""
         self._is_compact = False
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
 
     @property
     def hint(self) -> Hint:
@@ -67,20 +68,16 @@ class HintBand(QWidget):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._refresh()
+        self.updateGeometry()
+        self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         height = COMPACT_HEIGHT if self._is_compact else LARGE_HEIGHT if self._is_large else HEIGHT
         return QSize(px(480), px(height))
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, hint = current_theme(), self._hint
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
         theme.paint_box(painter, QRectF(self.rect()), c.inv, radius=CARD_RADIUS)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         middle = self.height() / 2
@@ -134,12 +131,7 @@ class HintBand(QWidget):
         return not self._is_compact and self.width() >= px(LARGE_FROM)
 
     def _clock(self) -> QRectF:
-        px = current_theme().px
         small = current_theme().font(14 if self._is_compact else 16, MEDIUM)
         width = max(px(128), QFontMetrics(small).horizontalAdvance(self._usual) + px(4))
         height = px(64 if self._is_compact else 88)
         return QRectF(self.width() - px(24) - width, (self.height() - height) / 2, width, height)
-
-    def _refresh(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -7,14 +7,15 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter
+from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
 from app.widgets.gauge import DASH, DASHES, UNKNOWN, GaugeMeasure, gauge_measure
+from app.widgets.painted import Painted
 from app.widgets.painted_text import RIGHT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.body import joint_name, name_of
@@ -54,7 +55,7 @@ def hip_face(found: HipHeadingState | None, is_now: bool = False) -> HipFace:
     return HipFace(gauge_measure(sd_deg, required_deg, HEADING_FROM_DEG, "°", is_sure), is_now and not is_sure)
 
 
-class HipGauge(QWidget):
+class HipGauge(Painted):
     """One hip's card: its ring at the left, what would show it in the middle, the figure at the right."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -64,6 +65,7 @@ class HipGauge(QWidget):
         self._joint = joint
         self._face = HipFace()
         self._is_compact = False
+        scaled(self.setMinimumSize, 300, LEAST_HEIGHT)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
         self._name()
 
@@ -84,12 +86,7 @@ class HipGauge(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(300), px(COMPACT_HEIGHT if self._is_compact else HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(300), px(LEAST_HEIGHT))
 
     @property
     def _is_low(self) -> bool:
@@ -130,11 +127,9 @@ class HipGauge(QWidget):
             tr("Enough movement") if self._face.is_met else tr("Walk 15 s with a turn, or lunge")
         )
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, face = current_theme(), self._face
         c = theme.colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         pen = theme.pen(c.ink if face.is_now else c.control if face.note else c.line, 2.5 if face.is_now else 1)
         if face.note:
             pen.setDashPattern([3.0, 3.0])
@@ -147,16 +142,12 @@ class HipGauge(QWidget):
             self._paint_ring(painter, self._ring())
         chip = self._chip
         paint_chip(painter, QRectF(self._chip_left(), (self.height() - chip) / 2, chip, chip), self._joint.side, theme)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def _ring(self) -> QRectF:
-        px = current_theme().px
         side = min(px(RING), self.height() - px(16))
         return QRectF(px(14), (self.height() - side) / 2, side, side)
 
     def _chip_left(self) -> float:
-        px = current_theme().px
         return px(14) if self._is_low else self._ring().right() + px(12)
 
     def _paint_ring(self, painter: QPainter, room: QRectF) -> None:

@@ -1,10 +1,10 @@
 """A small button that states where figures come from, beside it while it is asked for."""
 
-from PySide6.QtCore import QRectF, QSize
+from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QToolTip
+from PySide6.QtWidgets import QToolTip
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.painted_button import PaintedButton
 
@@ -17,7 +17,7 @@ class InfoButton(PaintedButton):
     def __init__(self, name: str) -> None:
         super().__init__()
         self.setAccessibleName(name)
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, TARGET, TARGET)
         self.clicked.connect(self._show)
         self.show_words("")
 
@@ -29,10 +29,6 @@ class InfoButton(PaintedButton):
         self.setToolTip(words)
         self.setAccessibleDescription(words)
         self.setVisible(bool(words))
-
-    def sizeHint(self) -> QSize:
-        side = px(TARGET)
-        return QSize(side, side)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, painter = current_theme(), QPainter(self)

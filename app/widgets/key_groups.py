@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, QMimeData, QSize, Qt
+from PySide6.QtCore import QMimeData, QSize, Qt
 from PySide6.QtGui import QColor, QPalette, QTextBlockFormat, QTextOption
 from PySide6.QtWidgets import QFrame, QSizePolicy, QTextEdit
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.text import SEMIBOLD
 
 COLUMNS = 3
@@ -35,10 +35,10 @@ class KeyGroups(QTextEdit):
         self.setWordWrapMode(QTextOption.WrapMode.NoWrap)
         for set_policy in (self.setHorizontalScrollBarPolicy, self.setVerticalScrollBarPolicy):
             set_policy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
         self.document().setDocumentMargin(0)
         self.viewport().setAutoFillBackground(False)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def text(self) -> str:
@@ -56,16 +56,8 @@ class KeyGroups(QTextEdit):
         copied.setText("-".join(self.textCursor().selectedText().split()))
         return copied
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
-
     def sizeHint(self) -> QSize:
         return QSize(px(COLUMNS * WIDTH), px(ROW) * len(self._rows))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     @property
     def _rows(self) -> list[list[str]]:

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Sequence
 
-from PySide6.QtCore import QSize
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.theme.current import px
+from app.theme.current import px, scaled
+from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
 
 KEY = 28
@@ -25,8 +25,7 @@ class LineKeys(QWidget):
                 widget.hide()
                 widget.deleteLater()
         for pen_of, name in keys:
-            self._row.addWidget(_Line(pen_of))
-            self._row.addWidget(Text(name, size=12, tone="ink2"))
+            lay_out(self._row, _Line(pen_of), Text(name, size=12, tone="ink2"))
             self._row.addSpacing(px(8))
         self._row.addStretch(1)
 
@@ -37,10 +36,8 @@ class _Line(QWidget):
     def __init__(self, pen_of: Callable[[], QPen]) -> None:
         super().__init__()
         self._pen_of = pen_of
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(KEY), px(16))
+        scaled(self.setFixedWidth, KEY)
+        scaled(self.setMinimumHeight, 16)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)

@@ -346,10 +346,7 @@ class LineList(CellTable):
         stays: bool = False,
         head: tuple[str, str] = ("", ""),
     ) -> None:
-        """Show other lines, with the one that has this id chosen, where it is among them.
-
-        `stays`: the list was only read again, and is not scrolled. `head`: what the values of visits are of.
-        """
+        """Show other lines with this id chosen; `stays`: keep the scroll position, `head`: column heads."""
         scrolled = self.verticalScrollBar().value()
         self.lines = tuple(lines)
         columns = VisitColumns([line for line in lines if isinstance(line, SessionLine)], head)

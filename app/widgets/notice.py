@@ -1,19 +1,21 @@
 """What is so and what follows, beside what it is about, after an icon. Yellow where it needs a look."""
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.theme.current import current_theme
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 
 ICON = 22
 PADDING = 10
 
 
-class Notice(Themed):
+class Notice(Painted):
     """Keeps its place while it has nothing to say, unless it is hidden. `padding`: above and below, px."""
 
     accessible_role = QAccessible.Role.Note
@@ -26,12 +28,9 @@ class Notice(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
         self._what = Text(size=size, weight=SEMIBOLD, wraps=True)
         self._then = Text(size=14, tone="ink2", wraps=True)
-        self._words = QVBoxLayout()
-        self._words.addWidget(self._what)
-        self._words.addWidget(self._then)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(self._words, 1)
-        self._apply_theme()
+        words = lay_out(QVBoxLayout(), self._what, self._then, spacing=2)
+        row = QHBoxLayout(self)
+        lay_out(row, (words, 1), margins=(PADDING + ICON + 8, self._padding, PADDING, self._padding))
 
     @property
     def text(self) -> str:
@@ -43,6 +42,7 @@ class Notice(Themed):
             return
         is_news = what != self._what.text()
         self._icon, self._is_caution = icon, is_caution
+        set_ground(self, Ground("caution", "caution_edge") if is_caution else None)
         self._what.setText(what)
         self._what.setVisible(bool(what))
         self._then.setText(then)
@@ -54,13 +54,9 @@ class Notice(Themed):
             QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
         self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        if self._is_caution:
-            box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-            theme.paint_box(painter, box, c.caution, c.caution_edge, 1)
         if self._icon is not None:
             first = self._what if self._what.text() else self._then
             wraps = Qt.TextFlag.TextWordWrap
@@ -69,9 +65,3 @@ class Notice(Themed):
             middle = first.y() + above + first.fontMetrics().height() / 2
             mark = QRectF(px(PADDING), middle - px(ICON) / 2, px(ICON), px(ICON))
             paint_icon(painter, self._icon, mark, c.caution_ink if self._is_caution else c.ink)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        above = px(self._padding)
-        self._row.setContentsMargins(px(PADDING + ICON + 8), above, px(PADDING), above)
-        self._words.setSpacing(px(2))

@@ -1,15 +1,18 @@
-"""A button that paints itself: Enter presses it as Space does, and a veil lies over it under the mouse."""
+"""A button that draws itself: Enter presses it as Space does, and a veil lies over it under the mouse."""
+
+from collections.abc import Sequence
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QKeyEvent, QPainter
+from PySide6.QtGui import QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QWidget
 
 from app.theme.current import current_theme
 from app.theme.theme import CONTROL_RADIUS
+from app.widgets.painted_text import PaintedText
 
 
 class PaintedButton(QAbstractButton):
-    """`pressing_keys`: what presses it besides Space."""
+    """`pressing_keys`: what presses it besides Space. It is drawn as `Painted` is."""
 
     pressing_keys: tuple[Qt.Key, ...] = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
@@ -22,6 +25,20 @@ class PaintedButton(QAbstractButton):
             self.click()
             return
         super().keyPressEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self.draw(painter)
+        for text in self.painted_texts():
+            text.paint(painter, current_theme().colours)
+
+    def draw(self, painter: QPainter) -> None:
+        """Draw all but words."""
+
+    def painted_texts(self) -> Sequence[PaintedText]:
+        """What is written, and where."""
+        return ()
 
     def paint_veil(self, painter: QPainter, box: QRectF, radius: float = CONTROL_RADIUS) -> None:
         """Show that the mouse is over it; `radius` in pixels at scale 1."""

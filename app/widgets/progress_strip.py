@@ -1,31 +1,34 @@
 """What goes on beside the screen and how far it is, in one line that is in nobody's way."""
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
+from app.theme.ground import Ground, set_ground
+from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 HEIGHT, BAR = 36, (160, 6)
 
 
-class ProgressStrip(Themed):
+class ProgressStrip(QWidget):
     """Hidden until it is shown something."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        set_ground(self, Ground(line="line", edge=Qt.Edge.TopEdge))
         self.words = Text(tone="ink2", wraps=True)
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setAccessibleName(tr("Progress so far"))
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self.words, 1)
-        self._row.addWidget(self._line, 0, Qt.AlignmentFlag.AlignVCenter)
-        self._apply_theme()
+        row = QHBoxLayout(self)
+        lay_out(
+            row, (self.words, 1), (self._line, 0, Qt.AlignmentFlag.AlignVCenter), margins=(24, 6, 24, 6), spacing=16
+        )
+        scaled(self._line.setFixedSize, BAR[0], BAR[1])
+        scaled(self.setMinimumHeight, HEIGHT)
         self.hide()
 
     @property
@@ -38,15 +41,3 @@ class ProgressStrip(Themed):
         self._line.setRange(0, total)
         self._line.setValue(done)
         self.show()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setPen(current_theme().pen(current_theme().colours.line, 1))
-        painter.drawLine(0, 0, self.width(), 0)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(24), px(6), px(24), px(6))
-        self._row.setSpacing(px(16))
-        self._line.setFixedSize(px(BAR[0]), px(BAR[1]))
-        self.setMinimumHeight(px(HEIGHT))

@@ -16,7 +16,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, smooth_painter
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
@@ -115,14 +115,10 @@ class RailButton(QAbstractButton):
         return self._number > 0
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         if self._form is RailForm.COMPACT:
             return QSize(px(44), px(48 if self._is_step else 44))
         title, note = self._heights()
         return QSize(px(150), max(title + note + px(14), px(56 if self._is_step else 44)))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(0, self.sizeHint().height())
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
@@ -151,8 +147,7 @@ class RailButton(QAbstractButton):
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
         c = theme.colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         if self.is_current:
             self._paint_join(painter)
         elif self.underMouse() or self.isDown():
@@ -244,7 +239,6 @@ class RailButton(QAbstractButton):
             paint_icon(painter, Icon.STILL, ring.adjusted(inset, inset, -inset, -inset), c.ink2)
 
     def _ring(self) -> QRectF:
-        px = current_theme().px
         side = px(RING)
         middle = px(26 if self._form is RailForm.COMPACT else 30)
         return QRectF(middle - side / 2, (self.height() - side) / 2, side, side)
@@ -257,7 +251,6 @@ class RailButton(QAbstractButton):
 
     def _cap(self) -> QRectF:
         """Give the box of the key cap, at the right."""
-        px = current_theme().px
         width = QFontMetrics(current_theme().font(12, MEDIUM)).horizontalAdvance(self._key) + px(14)
         return QRectF(self.width() - px(17) - width, (self.height() - px(22)) / 2, width, px(22)).adjusted(0, 0.5, 0, 0)
 
@@ -266,7 +259,6 @@ class RailButton(QAbstractButton):
 
     def _text_width(self) -> int:
         """Give the room for words, from the rail's width and not the row's own: it must not wait for a layout."""
-        px = current_theme().px
         width = px(self._form.value) - px(12) - self._text_left() - px(4)
         return width - px(13) - round(self._cap().width()) - px(8) if self._key else width
 

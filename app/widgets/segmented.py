@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QRectF, Signal
-from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
+from PySide6.QtCore import Signal
+from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import current_theme
+from app.theme.ground import Ground, set_ground
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52
@@ -24,6 +24,7 @@ class Segmented(QWidget):
         super().__init__()
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
+        set_ground(self, Ground("sunken", "line"))
         self._group = QButtonGroup(self)
         height = HEIGHT if any(note for _, _, note in options) else PLAIN_HEIGHT
         self._segments = {key: _Segment(word, note, height, self) for key, word, note in options}
@@ -69,11 +70,6 @@ class Segmented(QWidget):
         """Leave the second lines to readers of screens, where there is no room for them; reasons are still shown."""
         for segment in self._segments.values():
             segment.set_brief(is_brief)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        c = current_theme().colours
-        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        current_theme().paint_box(QPainter(self), box, c.sunken, c.line, 1)
 
     def _leave(self, key: str, must_leave: bool) -> None:
         """Go to the first choice that can be chosen, if `key` was chosen and no longer can be."""

@@ -7,15 +7,14 @@ from collections.abc import Collection, Mapping
 
 from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.body_figure import paint_legs
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.sensor_tile import SensorTile, marks
 from app.widgets.text import SEMIBOLD
-from app.widgets.themed import Themed
 from app.widgets.tile_widget import TileWidget
 from app.wording.translation import tr
 from core.body import LEG_SEGMENTS, LEG_SITES, Side, Site
@@ -28,7 +27,7 @@ BETWEEN = 22  # of the sides, where the legs are left away
 EVERY_MS = 250  # faster changes cannot be read
 
 
-class SensorStrip(Themed):
+class SensorStrip(QWidget):
     """One stop for Tab; the arrows go from tile to tile."""
 
     accessible_role = QAccessible.Role.List
@@ -52,7 +51,7 @@ class SensorStrip(Themed):
             self._add(site)
         self._legs = QRect()
         self._set_tab_stop(next(iter(self.widgets.values())))
-        self._arrange()
+        on_theme(self._arrange)
 
     @property
     def tiles(self) -> Mapping[Site, SensorTile]:
@@ -165,7 +164,6 @@ class SensorStrip(Themed):
 
     def _arrange_seven(self) -> None:
         """In one row about the pelvis; in two with the pelvis at the end of the first; else the sides side by side."""
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -189,7 +187,6 @@ class SensorStrip(Themed):
         self.update()
 
     def _arrange_six(self) -> None:
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -237,10 +234,6 @@ class SensorStrip(Themed):
     def _on_later(self) -> None:
         if self._waiting is not None:
             self.show_at_once(self._waiting)
-
-    def _apply_theme(self) -> None:
-        self._arrange()
-        self.update()
 
 
 def _order(sites: Collection[Site], is_from_behind: bool) -> list[Site]:

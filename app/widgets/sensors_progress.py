@@ -4,17 +4,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
-from app.theme.icons import Icon, paint_icon
+from app.theme.current import on_theme, px, scaled
+from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
-from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 LINE, MARK, GAP = 28, 18, 10
@@ -52,15 +52,10 @@ class ProgressShown:
     is_running: bool = True
 
 
-class SensorsProgress(Themed):
-    """
-    Signals
-    -------
-    stop_pressed
-        It is to be left.
-    """
+class SensorsProgress(QWidget):
+    """"""
 
-    stop_pressed = Signal()
+    stop_pressed = Signal()  # it is to be left
 
     def __init__(self) -> None:
         super().__init__()
@@ -73,24 +68,17 @@ class SensorsProgress(Themed):
         self.notice = Notice(size=16)
         self.stop = Button(tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
         self._inside = QWidget()
-        self._column = QVBoxLayout(self._inside)
-        self._column.setContentsMargins(0, 0, 0, 0)
+        column = QVBoxLayout(self._inside)
         for part in (self._title, self._sentence):
             part.setAlignment(Qt.AlignmentFlag.AlignHCenter)
         for widget in (self._title, self._sentence, self._bar, self._lines, self.notice):
-            self._column.addWidget(widget)
-        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        middle = QHBoxLayout()
-        middle.addStretch(1)
-        middle.addWidget(self._inside)
-        middle.addStretch(1)
-        outer.addStretch(1)
-        outer.addLayout(middle)
-        outer.addStretch(2)
+            column.addWidget(widget)
+        lay_out(column, (self.stop, 0, Qt.AlignmentFlag.AlignHCenter), margins=0, spacing=14)
+        middle = lay_out(QHBoxLayout(), 1, self._inside, 1)
+        lay_out(QVBoxLayout(self), 1, middle, 2, margins=0)
         self.stop.clicked.connect(self.stop_pressed)
-        self._apply_theme()
+        scaled(self._bar.setFixedHeight, 8)
+        on_theme(self._fit)
 
     @property
     def shown(self) -> ProgressShown:
@@ -131,64 +119,40 @@ class SensorsProgress(Themed):
         """Give it a width of its own: sentences that wrap ask for their height by that."""
         self._inside.setFixedWidth(min(px(WIDEST), self.width()))
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(14))
-        self._bar.setFixedHeight(px(8))
-        self._fit()
 
-
-class _SensorLines(Themed):
+class _SensorLines(QWidget):
     """The sensors one below the other; screen readers are given all of them."""
 
     def __init__(self) -> None:
         super().__init__()
         self._shown: tuple[SensorLine, ...] = ()
+        self._rows: list[tuple[QWidget, IconMark, Text]] = []
+        self._column = lay_out(QVBoxLayout(self), margins=0, spacing=0)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
 
     def show_lines(self, lines: Sequence[SensorLine]) -> None:
         if tuple(lines) == self._shown:
             return
-        is_other_size = len(lines) != len(self._shown)
         self._shown = tuple(lines)
         self.setVisible(bool(lines))
         self.setAccessibleName(", ".join(f"{line.name} {line.words or _STATES[line.state]()}" for line in lines))
-        if is_other_size:
-            self.updateGeometry()
-        self.update()
+        while len(self._rows) < len(lines):
+            self._add_row()
+        for number, (row, mark, words) in enumerate(self._rows):
+            row.setVisible(number < len(lines))
+            if number < len(lines):
+                line = lines[number]
+                tone = "ink2" if line.state is LineState.TO_DO else "ink"
+                mark.set_icon(_ICONS[line.state], tone)
+                words.set_tone(tone)
+                words.setText(f"{line.name} · {line.words}" if line.words else line.name)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        widths = [QFontMetrics(text.font).horizontalAdvance(text.text) for text in self.painted_texts()]
-        return QSize(max(widths, default=0) + px(MARK + GAP), len(self._shown) * px(LINE))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(0, self.sizeHint().height())
-
-    def painted_texts(self) -> list[PaintedText]:
-        """Give what is painted now, each in its box."""
-        px, theme = current_theme().px, current_theme()
-        texts = []
-        for number, line in enumerate(self._shown):
-            box = QRectF(px(MARK + GAP), number * px(LINE), self.width() - px(MARK + GAP), px(LINE))
-            stated = f"{line.name} · {line.words}" if line.words else line.name
-            tone = "ink2" if line.state is LineState.TO_DO else "ink"
-            texts.append(PaintedText(stated, box, theme.font(14, MEDIUM), tone, LEFT))
-        return texts
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        px, c = current_theme().px, current_theme().colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        for number, line in enumerate(self._shown):
-            mark = QRectF(0, number * px(LINE) + px((LINE - MARK) / 2), px(MARK), px(MARK))
-            paint_icon(painter, _ICONS[line.state], mark, c.ink2 if line.state is LineState.TO_DO else c.ink)
-        for text in self.painted_texts():
-            text.paint(painter, c)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()
+    def _add_row(self) -> None:
+        row, mark, words = QWidget(), IconMark(Icon.UNCHECKED, MARK), Text(weight=MEDIUM)
+        lay_out(QHBoxLayout(row), mark, (words, 1), margins=0, spacing=GAP)
+        scaled(row.setFixedHeight, LINE)
+        self._column.addWidget(row)
+        self._rows.append((row, mark, words))
 
 
 _ICONS = {

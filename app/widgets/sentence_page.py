@@ -1,16 +1,15 @@
 """A sentence in the place of what is not there yet, and one button that leads on."""
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 
 
-class SentencePage(Themed):
+class SentencePage(QWidget):
     pressed = Signal()
 
     def __init__(self) -> None:
@@ -21,13 +20,8 @@ class SentencePage(Themed):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.button = Button("", ButtonKind.SECONDARY, Icon.CHEVRON)
         self.button.clicked.connect(self.pressed)
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._what)
-        self._column.addWidget(self._then)
-        self._column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(1)
-        self._apply_theme()
+        parts = (1, self._what, self._then, (self.button, 0, Qt.AlignmentFlag.AlignHCenter), 1)
+        lay_out(QVBoxLayout(self), *parts, margins=24, spacing=16)
 
     def focus(self) -> None:
         """Give the focus to the button; without one the bar has it."""
@@ -42,9 +36,3 @@ class SentencePage(Themed):
         self.button.setText(button)
         self.button.setAccessibleName(button)
         self.button.setVisible(bool(button))
-        self.button.updateGeometry()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
-        self._column.setSpacing(px(16))

@@ -7,7 +7,7 @@ from PySide6.QtGui import QAccessible, QColor, QImage, QImageReader, QKeyEvent, 
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px
-from app.widgets.themed import Themed
+from app.widgets.painted import Painted
 from app.wording.translation import tr, tr_n
 
 PAGE_WIDTH = 560  # a page of A4 that can be read
@@ -107,18 +107,12 @@ class Sheets(QWidget):
         self.setMinimumHeight(round(self.top_of(self.count)))
 
 
-class SmallSheets(Themed):
-    """A column of small pages. A click, or the arrow keys, go to one; the page that is read has a bar beside it.
-
-    Signals
-    -------
-    requested
-        The number of a page, from 0.
-    """
+class SmallSheets(Painted):
+    """A column of small pages. A click, or the arrow keys, go to one; the page that is read has a bar beside it."""
 
     accessible_role = QAccessible.Role.List
 
-    requested = Signal(int)
+    requested = Signal(int)  # the number of a page, from 0
 
     def __init__(self) -> None:
         super().__init__()
@@ -152,7 +146,6 @@ class SmallSheets(Themed):
         return max(min(px(SMALL_WIDTH), room / max(heights, 1.0)), px(LEAST_WIDTH))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(SMALL_WIDTH + 16), px(SMALL_WIDTH))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -173,11 +166,9 @@ class SmallSheets(Themed):
             if self.place_of(number).contains(event.position()):
                 self._go_to(number)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(theme.font(12))
         for number, page in enumerate(self._pages):
             place = self.place_of(number)
@@ -202,9 +193,6 @@ class SmallSheets(Themed):
         self.setAccessibleName(tr("Pages"))
         stated = tr("Page {page} of {pages}").format(page=self.number + 1, pages=len(self._pages))
         self.setAccessibleDescription(stated if self._pages else "")
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
 
 
 def _paint_page(painter: QPainter, place: QRectF, picture: QImage) -> None:

@@ -1,18 +1,17 @@
 """A curve as large as a line of words: whether there is anything in a recording, and when."""
 
 import numpy as np
-from PySide6.QtCore import QPointF, QSize
-from PySide6.QtGui import QAccessible, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QSizePolicy
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QAccessible, QPainter, QPolygonF
 
-from app.theme.current import current_theme, px
-from app.widgets.themed import Themed
+from app.theme.current import current_theme, scaled
+from app.widgets.painted import Painted
 from core.samples import FloatArray
 
 SIZE = (120, 28)
 
 
-class SmallCurve(Themed):
+class SmallCurve(Painted):
     """`name` is what readers of screens say of it. A gap in the values is one in the line."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -21,7 +20,7 @@ class SmallCurve(Themed):
         super().__init__()
         self._time_s: FloatArray = np.empty(0)
         self._values: FloatArray = np.empty(0)
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, *SIZE)
         self.setAccessibleName(name)
 
     def show_curve(self, time_s: FloatArray, values: FloatArray) -> None:
@@ -29,10 +28,7 @@ class SmallCurve(Themed):
         self._time_s, self._values = time_s, values
         self.update()
 
-    def sizeHint(self) -> QSize:
-        return QSize(px(SIZE[0]), px(SIZE[1]))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         known = np.isfinite(self._values)
         if known.sum() < 2:
             return
@@ -41,14 +37,8 @@ class SmallCurve(Themed):
         span_s, height = float(time_s[-1] - time_s[0]) or 1.0, (most - least) or 1.0
         x = 1 + (time_s - time_s[0]) / span_s * (self.width() - 2)
         y = self.height() - 1 - (values - least) / height * (self.height() - 2)
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(current_theme().pen(current_theme().colours.ink2, 1))
         ends = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
         for start, end in zip(ends[::2], ends[1::2], strict=True):
             part = zip(x[start:end], y[start:end], strict=True)
             painter.drawPolyline(QPolygonF([QPointF(float(a), float(b)) for a, b in part]))
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -1,19 +1,20 @@
 """What is shown in place of a result before there is one: an empty page, and a page that works."""
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import later, tr
 
+MIDDLE = Qt.AlignmentFlag.AlignHCenter
 SENTENCE = later("No session is open.")
 
 
-class EmptyPage(Themed):
+class EmptyPage(QWidget):
     """One sentence and the two ways on."""
 
     def __init__(self) -> None:
@@ -22,35 +23,18 @@ class EmptyPage(Themed):
         self.open_demonstration = Button(tr("Open the demonstration"), ButtonKind.SECONDARY, Icon.PLAY, tr("Ctrl D"))
         self._sentence = Text(tr(SENTENCE), size=26, weight=SEMIBOLD)
         self._hint = Text(tr("You can also drop a session folder here."), tone="ink2")
-        self._row = QHBoxLayout()
-        self._row.addStretch(1)
-        self._row.addWidget(self.open_folder)
-        self._row.addWidget(self.open_demonstration)
-        self._row.addStretch(1)
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addLayout(self._row)
-        self._column.addWidget(self._hint, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(1)
-        self._apply_theme()
+        self._row = lay_out(QHBoxLayout(), 1, self.open_folder, self.open_demonstration, 1, spacing=16)
+        parts = (1, (self._sentence, 0, MIDDLE), self._row, (self._hint, 0, MIDDLE), 1)
+        lay_out(QVBoxLayout(self), *parts, margins=24, spacing=24)
 
     def set_narrow(self, is_narrow: bool) -> None:
         """Stack the two buttons where they do not fit side by side."""
         way = QHBoxLayout.Direction.TopToBottom if is_narrow else QHBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
-        self._column.setSpacing(px(24))
-        self._row.setSpacing(px(16))
 
-
-class WorkingPage(Themed):
+class WorkingPage(QWidget):
     """What is being done, how far it is, and the way out."""
-
-    stop_pressed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,15 +46,9 @@ class WorkingPage(Themed):
         self._line.setRange(0, 1000)
         self._line.setAccessibleName(tr("Progress so far"))
         self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP, tr("Esc"))
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._title)
-        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self._what, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(1)
-        self.stop.clicked.connect(self.stop_pressed)
-        self._apply_theme()
+        parts = (1, self._title, (self._line, 0, MIDDLE), (self._what, 0, MIDDLE), (self.stop, 0, MIDDLE), 1)
+        lay_out(QVBoxLayout(self), *parts, margins=24, spacing=16)
+        scaled(self._line.setFixedSize, 400, 8)
 
     def begin(self, title: str) -> None:
         self._title.setText(title)
@@ -83,9 +61,3 @@ class WorkingPage(Themed):
     @property
     def progress(self) -> tuple[float, str]:
         return self._line.value() / 1000, self._what.text()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
-        self._column.setSpacing(px(16))
-        self._line.setFixedSize(px(400), px(8))

@@ -5,23 +5,21 @@ Its rows are the steps of a session, or the ways on from Home.
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QPoint, QRectF, Qt, Signal
+from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
-    QColor,
-    QPainter,
-    QPaintEvent,
 )
-from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import on_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
-from app.theme.theme import CONTROL_RADIUS
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
+from app.widgets.reading_area import scrolled
 from app.widgets.text import REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 
@@ -43,7 +41,7 @@ def home_below(*, can_lock: bool) -> tuple[BelowRow, ...]:
     )
 
 
-class StepRail(Themed):
+class StepRail(QWidget):
     """One stop for Tab: within it the arrows go from row to row, Enter or Space presses one."""
 
     accessible_role = QAccessible.Role.Grouping
@@ -54,6 +52,7 @@ class StepRail(Themed):
     def __init__(self) -> None:
         super().__init__()
         self._form = RailForm.USUAL
+        set_ground(self, Ground("sunken", edge=Qt.Edge.RightEdge))
         self._below_names: list[str] = []
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self.setAccessibleName(tr("Steps"))
@@ -65,7 +64,7 @@ class StepRail(Themed):
         self._tag = _NameTag(self)
         self._build()
         self.show_below(wizard_below())
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def form(self) -> RailForm:
@@ -98,9 +97,6 @@ class StepRail(Themed):
         if current is not None:
             current.setFocus(Qt.FocusReason.OtherFocusReason)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.sunken))
-
     def _build(self) -> None:
         self._head = QWidget()
         self._mark.setParent(self._head)
@@ -108,28 +104,15 @@ class StepRail(Themed):
         self._head.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._inside = QWidget()
         self._column = QVBoxLayout(self._inside)
-        self._column.setSpacing(0)
         self._steps = QVBoxLayout()
         self._foot = QVBoxLayout()
         for layout in (self._steps, self._foot):
             layout.setSpacing(0)
-        self._note_row = QVBoxLayout()
-        self._note_row.addWidget(self._note)
-        self._column.addWidget(self._head)
-        self._column.addLayout(self._steps)
-        self._column.addStretch(1)
-        self._column.addLayout(self._note_row)
-        self._column.addLayout(self._foot)
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        for hide in (self._scroll.setHorizontalScrollBarPolicy, self._scroll.setVerticalScrollBarPolicy):
-            hide(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # no room for one; the wheel and the arrows scroll
-        self._scroll.setWidget(self._inside)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self._scroll)
+        self._note_row = lay_out(QVBoxLayout(), self._note)
+        lay_out(self._column, self._head, self._steps, 1, self._note_row, self._foot, spacing=0)
+        self._scroll = scrolled(self._inside)
+        self._scroll.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # wheel and arrows scroll
+        lay_out(QVBoxLayout(self), self._scroll, margins=0)
 
     def _keep(self, rows: list[RailButton], count: int, layout: QVBoxLayout, slot: Callable[[], None]) -> None:
         while len(rows) > count:
@@ -184,14 +167,12 @@ class StepRail(Themed):
         self._note.setVisible(has_words and bool(self._note.text()))
 
     def _apply_theme(self) -> None:
-        px = current_theme().px
         is_compact = self._form is RailForm.COMPACT
         self.setFixedWidth(px(self._form.value))
         self._head.setFixedHeight(px(53 if is_compact else 72))
         left = px(6 if is_compact else 12)
-        side = self._mark.sizeHint()
         x, y = (18, 12) if is_compact else (17, 14)
-        self._mark.setGeometry(px(x) - left, px(y), side.width(), side.height())
+        self._mark.move(px(x) - left, px(y))
         self._name.setGeometry(px(50) - left, 0, px(self._form.value - 50), px(56))
         self._column.setContentsMargins(left, 0, 0, px(6 if is_compact else 20))
         beside_note = (px(31) - left, px(12), px(12), px(8))
@@ -200,7 +181,6 @@ class StepRail(Themed):
             row.set_form(self._form)
         self._tag.hide()
         self._show_words()
-        self.update()
 
 
 class _NameTag(Text):
@@ -210,28 +190,17 @@ class _NameTag(Text):
         super().__init__(size=14, weight=REGULAR, tone="inv_ink", parent=rail)
         self._rail = rail
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        set_ground(self, Ground("inv", inset=0))
+        scaled(self.setContentsMargins, 12, 8, 12, 8)
         self.hide()
 
     def name(self, row: RailButton) -> None:
-        px = current_theme().px
         window = self._rail.window()
         if self.parentWidget() is not window:
             self.setParent(window)
         self.setText(", ".join(filter(None, [row.text(), row.note])))
-        self.setContentsMargins(px(12), px(8), px(12), px(8))
         self.adjustSize()
         corner = row.mapTo(window, QPoint(row.width() + px(8), (row.height() - self.height()) // 2))
         self.move(corner)
         self.raise_()
         self.show()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(theme.colours.inv))
-        radius = CONTROL_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()), radius, radius)
-        painter.end()
-        super().paintEvent(event)

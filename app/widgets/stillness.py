@@ -8,10 +8,11 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled, smooth_painter
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import segment_name
 from app.wording.translation import figure_text, tr
@@ -39,7 +40,7 @@ class RingFace:
     is_dotted: bool = False
 
 
-class CountRing(QWidget):
+class CountRing(Painted):
     """As large as its place; the figure is read from six metres."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -47,6 +48,7 @@ class CountRing(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._face = RingFace()
+        scaled(self.setMinimumSize, 160, 160)  # it takes the room there is, and asks for none that would have to scroll
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def show_face(self, face: RingFace) -> None:
@@ -56,20 +58,11 @@ class CountRing(QWidget):
         self.setAccessibleName(" ".join(filter(None, [face.figure, face.word, face.key])))
         self.update()
 
-    def minimumSizeHint(self) -> QSize:
-        side = px(160)
-        return QSize(side, side)
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()  # it takes the room there is, and asks for none that would have to scroll
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, face = current_theme(), self._face
         c = theme.colours
         side = min(self.width(), self.height(), theme.px(1.3 * RING_SIZE))
         grow = side / RING_SIZE  # of what lies inside
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         box = QRectF((self.width() - side) / 2, (self.height() - side) / 2, side, side)
         width = RING * grow
         arc = box.adjusted(width / 2, width / 2, -width / 2, -width / 2)
@@ -186,14 +179,12 @@ class MovementBars(QWidget):
         return QSize(px(230), max(1, len(self._rows)) * self._row_height)
 
     def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(
             px(INSET + CHIP + 8) + self._name_width + px(8 + 50 + 8) + self._figure_width, self.sizeHint().height()
         )
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         for number, (sensor, row) in enumerate(self._rows.items()):
             place = QRect(0, number * self._row_height, self.width(), self._row_height)
             if event.rect().intersects(place):

@@ -1,10 +1,11 @@
 """Stopwatch of the session: the time since it began, and a line that grows to the target; never an alarm."""
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QColor, QFontMetrics, QPainter
+from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
+from app.widgets.painted import Painted
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.wording.numbers import clock
@@ -15,7 +16,7 @@ LINE = 96
 THICK = 5
 
 
-class Stopwatch(QWidget):
+class Stopwatch(Painted):
     """Passive: it shows what it is given."""
 
     def __init__(self) -> None:
@@ -37,7 +38,6 @@ class Stopwatch(QWidget):
         self._refresh()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         words, time = self._columns()
         return QSize(words + px(16) + time, px(40))
 
@@ -57,17 +57,12 @@ class Stopwatch(QWidget):
             ),
         ]
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        texts = self.painted_texts()
-        for text in texts:
-            text.paint(painter, c)
         if self._is_compact:
             return
-        words = texts[0].box
+        words = self.painted_texts()[0].box
         line = QRectF(words.right() - px(LINE), words.bottom() + px(4), px(LINE), px(THICK))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(c.track))

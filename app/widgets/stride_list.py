@@ -151,15 +151,10 @@ class StrideList(CellTable):
 
     Where there are no charts beside it, every line draws its own curves over the mean of its side.
 
-    Signals
-    -------
-    chosen
-        The StrideLine in force, or None.
-    turned
-        A StrideLine as it is now, which is to be left out or taken in again.
+    `chosen`: the StrideLine in force, or None.
     """
 
-    turned = Signal(object)
+    turned = Signal(object)  # A StrideLine as it is now, which is to be left out or taken in again
 
     def __init__(self, name: str) -> None:
         super().__init__(name, row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)

@@ -120,17 +120,10 @@ class CellTable(QTableView):
     A list (`is_list`) scrolls, has rows of one height, and one of them may be chosen: by mouse, arrows, Home and End.
     Every column has what its widest cell needs; what is left is shared. Lengths are in px of the design: `row` and
     `head` (0: none) the heights, `padding` at both sides of a cell, `edge` before the first column.
-
-    Signals
-    -------
-    chosen
-        The key of the row in force, or None.
-    opened
-        The key of the row at which Enter was pressed.
     """
 
-    chosen = Signal(object)
-    opened = Signal(object)
+    chosen = Signal(object)  # the key of the row in force, or None
+    opened = Signal(object)  # the key of the row at which Enter was pressed
 
     def __init__(
         self,
@@ -230,13 +223,11 @@ class CellTable(QTableView):
 
     def room_of(self, rect: QRectF, column: int, *, is_heading: bool = False) -> QRectF:
         """What a cell's padding leaves of it; a heading lies on a ground of its own and begins after its edge."""
-        px = current_theme().px
         left = px(self._padding) if is_heading else self._left_padding(column)
         return rect.adjusted(left, 0, -px(self._padding), 0)
 
     def fit(self) -> None:
         """Measure all of it again."""
-        px = current_theme().px
         self.setFont(current_theme().font(14))
         self.horizontalHeader().setFixedHeight(px(self._head) if self._head else 0)
         self.fit_rows()
@@ -269,7 +260,6 @@ class CellTable(QTableView):
             self.setColumnWidth(column, needed[column] + more)
 
     def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
         width, head = sum(self.needed_widths), px(self._head) if self._head else 0
         if self._is_list:
             return QSize(width + self.verticalScrollBar().sizeHint().width(), head + px(LEAST_ROWS * self._row))

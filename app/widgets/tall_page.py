@@ -1,12 +1,10 @@
 """A page as high as its words need in the width they have, for what scrolls: Qt's own areas ask for the least only."""
 
 from PySide6.QtCore import QEvent
-from PySide6.QtWidgets import QVBoxLayout
-
-from app.widgets.themed import Themed
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 
-class TallPage(Themed):
+class TallPage(QWidget):
     """Its parts stand in `column`, which is given the height that its words take once they wrap."""
 
     def __init__(self) -> None:

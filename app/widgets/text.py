@@ -2,11 +2,11 @@
 
 import re
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme
 
 REGULAR = QFont.Weight.Normal
 MEDIUM = QFont.Weight.Medium
@@ -33,7 +33,7 @@ class Text(QLabel):
         self.setTextFormat(Qt.TextFormat.PlainText)  # what files hold is never markup
         self.setWordWrap(wraps)
         self.setText(text)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     def setText(self, text: str) -> None:  # noqa: N802  Qt names it
         super().setText(UNIT.sub(JOINER, text) if self.wordWrap() else text)
@@ -41,11 +41,6 @@ class Text(QLabel):
     def text(self) -> str:
         """Give the words as they were given, without what keeps a unit in one line."""
         return super().text().replace(JOINER, "")
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
 
     def set_size(self, size: float) -> None:
         if size != self._size:

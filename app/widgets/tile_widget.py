@@ -1,15 +1,16 @@
 """One sensor's tile: whose it is, how it is, and whether it moves."""
 
 from PySide6.QtCore import QRectF, Qt, Signal
-from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CONTROL_RADIUS
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.battery import paint_battery
+from app.widgets.painted import Painted
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.sensor_tile import SensorTile, TileState, rate_and_loss
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -21,7 +22,7 @@ PADDING = 10
 MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
 
 
-class TileWidget(QWidget):
+class TileWidget(Painted):
     """One tile. It paints itself again only when what it shows has changed."""
 
     accessible_role = QAccessible.Role.ListItem
@@ -52,7 +53,6 @@ class TileWidget(QWidget):
 
     def needed_width(self, is_tight: bool) -> int:
         """The width below which its words are cut, whatever it may come to say."""
-        px = current_theme().px
         name = QFontMetrics(self._name_font()).horizontalAdvance(self._segment())
         bold = QFontMetrics(self._words_font(is_bold=True))
         if self._is_compact:
@@ -67,7 +67,6 @@ class TileWidget(QWidget):
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        px = current_theme().px
         state = self._tile.state
         is_bold = self._tile.is_bad
         tone = "caution_ink" if is_bold else "ink2"
@@ -99,17 +98,13 @@ class TileWidget(QWidget):
             PaintedText(stated, words, font, tone, wraps=True),
         ]
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c = theme.colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_frame(painter)
         if (side := self._tile.site.side) is not None:
             paint_chip(painter, self._chip(), side, theme)
         self._paint_marks(painter, QColor(c.caution_ink if self._tile.is_bad else c.ink2))
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Home: -9, Qt.Key.Key_End: 9}
@@ -137,7 +132,6 @@ class TileWidget(QWidget):
 
     def _paint_marks(self, painter: QPainter, ink: QColor) -> None:
         """Draw battery and movement at the right of the name, or what takes their place."""
-        px = current_theme().px
         state = self._tile.state
         icon = Icon.WAVE if self._tile.is_moving else Icon.STILL
         if state is TileState.SILENT:
@@ -168,7 +162,6 @@ class TileWidget(QWidget):
         return CHIP + 6 if self._tile.site.side is not None else 0
 
     def _chip(self) -> QRectF:
-        px = current_theme().px
         chip = px(CHIP)
         if self._is_compact:
             return QRectF(px(8), (self.height() - chip) / 2, chip, chip)
@@ -179,7 +172,6 @@ class TileWidget(QWidget):
 
     def _marks_left(self) -> float:
         """Give where the battery begins, also where there is none: the name keeps its place."""
-        px = current_theme().px
         return self.width() - px(9 + MARKS)
 
     def _segment(self) -> str:

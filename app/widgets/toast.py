@@ -1,21 +1,20 @@
 """What was just done and can be undone. It goes by itself, but not while somebody reaches for it."""
 
-from PySide6.QtCore import QEvent, QRectF, QTimer, Signal
+from PySide6.QtCore import QEvent, QTimer, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
     QEnterEvent,
     QHideEvent,
-    QPainter,
-    QPaintEvent,
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import on_theme, px
+from app.theme.ground import Ground, set_ground
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 WIDTH = 320
@@ -23,7 +22,7 @@ HEIGHT = 56
 STAYS_MS = 6000
 
 
-class Toast(Themed):
+class Toast(QWidget):
     """Hidden until it has something to offer. The shell places it and knows its key."""
 
     accessible_role = QAccessible.Role.AlertMessage
@@ -33,19 +32,18 @@ class Toast(Themed):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._room = 10_000
+        set_ground(self, Ground("inv", "surface"))  # with a line that shows on the inverse bar too
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self._text = Text(tone="inv_ink", wraps=True)
         self.button = VerbButton(self)
         self._clock = QTimer(self)
         self._clock.setSingleShot(True)
         self._clock.setInterval(STAYS_MS)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self._text, 1)
-        self._row.addWidget(self.button)
+        lay_out(QHBoxLayout(self), (self._text, 1), self.button, margins=(16, 4, 4, 4), spacing=12)
         self._clock.timeout.connect(self._on_timeout)
         self.button.clicked.connect(self.undo)
         self.hide()
-        self._apply_theme()
+        on_theme(self._fit)
 
     @property
     def text(self) -> str:
@@ -89,11 +87,6 @@ class Toast(Themed):
         super().hideEvent(event)
         self._clock.stop()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        c, box = current_theme().colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        line = c.surface  # so that it shows on the inverse bar too
-        current_theme().paint_box(QPainter(self), box, c.inv, line, 1)
-
     def _on_timeout(self) -> None:
         if self.button.hasFocus():
             self._clock.start()  # who has come to it by Tab is about to press it
@@ -101,13 +94,6 @@ class Toast(Themed):
             self.hide()
 
     def _fit(self) -> None:
-        px = current_theme().px
         width = min(max(px(WIDTH), self.button.sizeHint().width() + px(180 + 32)), self._room)
         room = width - self.button.sizeHint().width() - px(16 + 12 + 4)
         self.setFixedSize(width, max(px(HEIGHT), self._text.heightForWidth(room) + px(16)))
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(16), px(4), px(4), px(4))
-        self._row.setSpacing(px(12))
-        self._fit()

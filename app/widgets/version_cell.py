@@ -4,7 +4,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QKeyEvent, QPainter, QPaintEvent, QStaticText, QTextOption, QTransform
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled, smooth_painter
 
 PADDING, MARK, GAP = 14, 20, 12
 VALUE_SIZE, WHOSE_SIZE = 16, 14
@@ -18,18 +18,10 @@ ARROWS = {
 
 
 class VersionCell(QAbstractButton):
-    """As high as its words need; the one that is chosen has a filled mark and a bold edge.
+    """As high as its words need; the one that is chosen has a filled mark and a bold edge."""
 
-    Signals
-    -------
-    moved
-        An arrow was pressed: columns to the right, rows down.
-    confirmed
-        Enter was pressed.
-    """
-
-    moved = Signal(int, int)
-    confirmed = Signal()
+    moved = Signal(int, int)  # an arrow was pressed: columns to the right, rows down
+    confirmed = Signal()  # enter was pressed
 
     def __init__(self, field: str, value: str, whose: str) -> None:
         super().__init__()
@@ -41,22 +33,16 @@ class VersionCell(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         policy = QSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         policy.setHeightForWidth(True)
+        scaled(self.setMinimumWidth, LEAST)
         self.setSizePolicy(policy)
 
-    def hasHeightForWidth(self) -> bool:  # noqa: N802  Qt calls it
-        return True
-
     def heightForWidth(self, width: int) -> int:  # noqa: N802  Qt calls it
-        px = current_theme().px
         value, whose = self._texts(width - px(2 * PADDING + MARK + GAP))
         return round(value.size().height() + whose.size().height()) + px(2 * PADDING + 2)
 
     def sizeHint(self) -> QSize:
         width = px(LEAST)
         return QSize(width, self.heightForWidth(width))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(px(LEAST), 0)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         key = Qt.Key(event.key())
@@ -70,8 +56,7 @@ class VersionCell(QAbstractButton):
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         inset = px(1)
         box = QRectF(self.rect()).adjusted(inset, inset, -inset, -inset)
         is_strong = self.isChecked() or self.hasFocus()

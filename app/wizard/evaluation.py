@@ -27,11 +27,8 @@ _log = logging.getLogger(__name__)
 class Evaluation(QObject):
     """`analysis` is that of `session`, both None before the first; a newer question takes the older one's place.
 
-    Signals
-    -------
-    computed
-        A session and what was found of it, which nobody knew before; strides left out by hand are still in it. `done`
-        follows.
+    `computed`: a session and what was found of it, which nobody knew before; strides left out by hand are still in it.
+    `done` follows.
     """
 
     done = Signal()

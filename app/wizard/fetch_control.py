@@ -1,6 +1,5 @@
 """What is shown and can be done while recordings are fetched from the sensors' memories: on any step that begins it."""
 
-import math
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
@@ -8,7 +7,7 @@ from PySide6.QtCore import QObject, Signal
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
-from app.wizard.sensor_sync import SOON_S
+from app.wizard.sensor_sync import time_left
 from app.wording.translation import tr, tr_n
 
 if TYPE_CHECKING:
@@ -18,14 +17,9 @@ if TYPE_CHECKING:
 
 
 class FetchControl(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    """
+    """"""
 
-    changed = Signal()
+    changed = Signal()  # something else is shown, or can be done
 
     def __init__(self, recordings: "SessionRecordings", sensors: "WornSensors", parent: QObject) -> None:
         super().__init__(parent)
@@ -115,10 +109,7 @@ def _sentence(view: "FetchView") -> str:
     if not view.sensor:
         return tr("Stopping the sensors and checking what they recorded.")
     stated = tr("{sensor}: {done} of about {of} samples.").format(sensor=view.sensor, done=view.done, of=view.of)
-    if view.left_s is None or view.left_s <= SOON_S:
-        return stated
-    seconds = math.ceil(view.left_s / SOON_S) * round(SOON_S)
-    return stated + " " + tr("About {seconds} s left.").format(seconds=seconds)
+    return " ".join(filter(None, [stated, time_left(view.left_s)]))
 
 
 def _share(view: "FetchView", sensors: int) -> float | None:

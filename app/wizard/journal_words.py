@@ -15,10 +15,7 @@ SETTLED_S = 1.0  # until what waited at the sources has been read, and what is m
 
 
 def trouble_message(trouble: Trouble, status: JournalStatus, lost: int = 0) -> Message:
-    """Say what is the matter with the disk, what is written in spite of it, and what to do.
-
-    `lost` counts samples of all sensors that did not come since the recording began.
-    """
+    """State what is wrong with the disk, what is still written, and what to do; `lost` counts all sensors."""
     what, remedy = (f"{tr(words)}." for words in REPORTED[trouble])
     if trouble is Trouble.DISK_SLOW and not status.dropped_records:
         return _late_message(status, lost, remedy)
@@ -96,17 +93,7 @@ def standstill_message(
     are_received: bool,
     are_counted: bool,
 ) -> Message:
-    """Say that the process stood still amid a recording, and what that cost; nothing once it is long past.
-
-    Parameters
-    ----------
-    began_s, now_s
-        The recording's beginning, and now, on the acquisition's clock.
-    lost
-        How many samples each worn sensor lacks now.
-    are_received, are_counted
-        Whether all of them have sent since; whether all report their rate, so that what is missing can be counted.
-    """
+    """State that the process stalled amid a recording and what was lost; empty once it is long past."""
     if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_REPORTED_S:
         return NOTHING
     stated = tr("Gaitwright stalled for {seconds:.0f} s, {time} min into the recording.")

@@ -12,8 +12,9 @@ from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.recorder import Recorder
 from app.system.progress import Report
-from app.wording.translation import filled, tr
+from app.wording.translation import tr
 from app.workers.background import Background
+from app.workers.refusals import refusal_of
 from devices.live import SourceRefusedError
 
 if TYPE_CHECKING:
@@ -26,26 +27,15 @@ SURE_S = 2.0  # of fetching, before it is shown how long the rest will take
 class FetchView:
     """How far the recording is that is being fetched.
 
-    Attributes
-    ----------
-    sensor
-        Which is sending now; empty while they are still asked to end.
-    done, of
-        Its samples, and about how many there are.
-    left_s
-        Until all sensors of this recording are fetched, about; None: not known yet.
-    fetched
-        Sensors that are done.
-    waiting
-        How many recordings there are in the sensors, this one among them.
+    `done`, `of`: its samples, and about how many there are.
     """
 
-    sensor: str = ""
+    sensor: str = ""  # which is sending now; empty while they are still asked to end
     done: int = 0
     of: int = 0
-    left_s: float | None = None
-    fetched: tuple[str, ...] = ()
-    waiting: int = 0
+    left_s: float | None = None  # until all sensors of this recording are fetched, about; None: not known yet
+    fetched: tuple[str, ...] = ()  # sensors that are done
+    waiting: int = 0  # how many recordings there are in the sensors, this one among them
 
 
 @dataclass(slots=True)
@@ -80,17 +70,10 @@ class _Running:
 
 
 class MemoryFetches(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown.
-    fetched
-        A Recorder whose journal holds what the sensors did.
-    """
+    """"""
 
-    changed = Signal()
-    fetched = Signal(object)
+    changed = Signal()  # something else is shown
+    fetched = Signal(object)  # A Recorder whose journal holds what the sensors did
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
@@ -132,7 +115,7 @@ class MemoryFetches(QObject):
             )
         for sensor, problem in self._failed.items():
             if isinstance(problem, SourceRefusedError):
-                return f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
+                return refusal_of(problem)
             what = tr("{sensor} is out of range.").format(sensor=sensor)
             then = tr("The recording is still in the sensor. Bring {sensor} closer, then fetch the recording again.")
             return what, then.format(sensor=sensor)

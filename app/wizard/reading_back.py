@@ -37,16 +37,12 @@ class StoppedRecording(NamedTuple):
 
 class ReadingBack(QObject):
     """
-    Signals
-    -------
-    read
-        A StoppedRecording, and the SessionRecording that it is now.
-    failed
-        What the matter is, where the recording is meanwhile, and whether that is news: at the first try, and where
-        it is left to the next start.
+
+    `failed`: what the matter is, where the recording is meanwhile, and whether that is news: at the first try, and
+    where it is left to the next start.
     """
 
-    read = Signal(object, object)
+    read = Signal(object, object)  # A StoppedRecording, and the SessionRecording that it is now
     failed = Signal(str, str, bool)
 
     def __init__(self, controller: LibraryController, fetches: MemoryFetches, parent: QObject) -> None:

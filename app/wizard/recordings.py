@@ -113,10 +113,7 @@ class SessionRecordings(QObject):
 
     @property
     def is_stopping(self) -> bool:
-        """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds.
-
-        Also one that has not begun: it is waited for until it has.
-        """
+        """Whether a recording has been stopped, or will be once it has begun, and is still waited for."""
         return self._phase in (RecordingPhase.BEGINNING_TO_STOP, RecordingPhase.STOPPING)
 
     @property
@@ -222,16 +219,7 @@ class SessionRecordings(QObject):
         test: "PlannedTest | None" = None,
         fetched: "tuple[InMemory, str] | None" = None,
     ) -> None:
-        """Record from now on; `begun` or `refused` follows.
-
-        `alignment`: what was changed at a prosthesis before; `test`: which timed test it is; `fetched`: what was
-        recorded in the sensors' memories before, and when that was begun.
-
-        Raises
-        ------
-        RuntimeError
-            Something is being recorded already, or there is no session.
-        """
+        """Record from now on; `begun` or `refused` follows. RuntimeError: already recording, or no session."""
         if self.session is None or self.ongoing is not None:
             raise RuntimeError("a recording needs a session, and is made one at a time")
         name = self._new_name(kind)
@@ -268,10 +256,7 @@ class SessionRecordings(QObject):
         self.changed.emit()
 
     def stop(self, strides: Mapping[Side, int] | None = None, *, is_kept: bool = True) -> None:
-        """Stop, and read back what was recorded; `ended` follows. One that has not begun yet ends as soon as it has.
-
-        Not `is_kept`: it was broken off and does not count; nothing is deleted.
-        """
+        """Stop and read back, at once or once begun; `ended` follows. Not `is_kept`: not counted, not deleted."""
         if self._phase in (RecordingPhase.BEGINNING, RecordingPhase.BEGINNING_TO_STOP):
             self._phase, self._strides = RecordingPhase.BEGINNING_TO_STOP, strides
             self._must_keep = self._must_keep and is_kept  # what was broken off stays so
@@ -300,10 +285,7 @@ class SessionRecordings(QObject):
         self.changed.emit()
 
     def close(self) -> None:
-        """Stop for good: of one that has not begun yet nobody may hear any more, so the library ends it itself.
-
-        Where that fails, what was recorded is found at the next start.
-        """
+        """Stop for good; a recording still beginning is ended by the library, or recovered at the next start."""
         if self.ongoing is None or self._phase in (RecordingPhase.WRITING, RecordingPhase.STOPPING):
             self.stop()
             self._reading_back.leave_in_sensors()
@@ -388,11 +370,7 @@ class SessionRecordings(QObject):
         return self._edits.stated(self.find(recording.id) or recording)
 
     def change(self, recording: SessionRecording, corrected: Callable[[Recording], Recording]) -> None:
-        """Correct what was stated about a recording; `changed` follows.
-
-        `corrected` is given the last word of it on the screen. What another station changed of the same meanwhile is
-        merged and reported, or `asked` about.
-        """
+        """Correct what a recording states; `changed` follows. `corrected` gets what the screen shows now."""
         shown = self.stated(recording)
         self._edits.save(recording.id, recording_fields(shown), recording_fields(corrected(shown)))
 

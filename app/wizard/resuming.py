@@ -52,10 +52,7 @@ def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
 
 
 def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "tuple[Session, Analysis]":
-    """Read a session without its samples, and what came of it: as that is kept, else computed now, and kept.
-
-    Strides left out by hand are left out.
-    """
+    """Read a session without samples, and its analysis, stored or computed now, less strides left out."""
     results, stored = opened.library.results, opened.library.sessions.get(session_id)
     reported = evaluated(stored, read_recordings(opened, stored))
     known = find_analysis(results, session_id, reported)
@@ -77,10 +74,7 @@ def sessions_of_condition(
 
 
 def session_to_analyse(opened: "OpenedLibrary", session_id: UUID) -> "tuple[Session, Callable[[bytes], None]] | None":
-    """A session with its samples and what keeps the analysis of it, as `packed` writes it; None: it is kept already.
-
-    What the patient's course needs is kept with it. Raises as `exchange.session_with_samples`.
-    """
+    """Give a session with samples and its analysis's keeper, None: kept; raises as `session_with_samples`."""
     stored = opened.library.sessions.get(session_id)
     reported = evaluated(stored, read_recordings(opened, stored))
     known = find_analysis(opened.library.results, session_id, reported)

@@ -11,8 +11,9 @@ from PySide6.QtCore import QObject, Signal
 
 from app.system.progress import Report
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
-from app.wording.translation import filled, later, tr
+from app.wording.translation import later, tr
 from app.workers.background import Background
+from app.workers.refusals import refusal_of
 from devices.dot.synchronising import NotSynchronisedError, SyncFailure, SyncStage
 from devices.live import SourceLostError, SourceRefusedError
 
@@ -55,17 +56,10 @@ class SyncView:
 
 
 class SensorSync(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown.
-    done
-        The sensors are ready.
-    """
+    """"""
 
-    changed = Signal()
-    done = Signal()
+    changed = Signal()  # something else is shown
+    done = Signal()  # the sensors are ready
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
@@ -114,7 +108,7 @@ class SensorSync(QObject):
                 "try again."
             )
         if isinstance(error, SourceRefusedError):
-            return f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}."
+            return refusal_of(error)
         if isinstance(error, SourceLostError):
             return tr("A sensor is out of range."), tr("Bring all sensors closer to this computer, then try again.")
         return tr("Synchronisation stopped early."), tr("Try again. See the log for details.")
@@ -215,10 +209,15 @@ def progress_of(sync: SensorSync, names: Collection[str]) -> ProgressShown:
     if view.attempt > 1:
         title = tr("Some sensors did not synchronise: all are being synchronised again")
     sentence = sentence_of(view)
-    if view.left_s is not None and view.left_s > SOON_S:
-        seconds = math.ceil(view.left_s / SOON_S) * round(SOON_S)
-        sentence += " " + tr("About {seconds} s left.").format(seconds=seconds)
+    sentence = " ".join(filter(None, [sentence, time_left(view.left_s)]))
     return ProgressShown(title, sentence, view.share, lines_of(view, names), stop=tr("Cancel"))
+
+
+def time_left(left_s: float | None) -> str:
+    """About how long it takes still; empty where that is not known, or soon."""
+    if left_s is None or left_s <= SOON_S:
+        return ""
+    return tr("About {seconds} s left.").format(seconds=math.ceil(left_s / SOON_S) * round(SOON_S))
 
 
 def lines_of(view: SyncView, names: Collection[str]) -> tuple[SensorLine, ...]:

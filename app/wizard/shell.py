@@ -3,21 +3,21 @@
 from enum import Enum, auto
 from itertools import pairwise
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantAnimation, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QObject, QPoint, QPropertyAnimation, QRect, Qt, QTimer, Signal
+from PySide6.QtGui import QPixmap, QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QGraphicsOpacityEffect, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.motion import duration_ms
 from app.widgets.action_bar import ActionBar, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
+from app.widgets.lay_out import lay_out
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import RailForm
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.step_rail import StepRail
-from app.widgets.themed import Themed
 from app.widgets.toast import Toast
 from app.wizard.step import StepId
 
@@ -37,14 +37,11 @@ class StripMode(Enum):
     HIDDEN = auto()
 
 
-class WizardShell(Themed):
+class WizardShell(QWidget):
     """Passive: it lays out what it holds, and knows nothing of what a page is for.
 
-    Signals
-    -------
-    room_changed
-        Whether the window is compact, and the width and height that a page has, in px of the design. Emitted when the
-        room or the page is another one.
+    `room_changed`: whether the window is compact, and the width and height that a page has, in px of the design.
+    Emitted when the room or the page is another one.
     """
 
     room_changed = Signal(bool, float, float)
@@ -69,7 +66,8 @@ class WizardShell(Themed):
         self._settled.setSingleShot(True)
         self._settled.timeout.connect(lambda: self._scroll.setUpdatesEnabled(True))
         self._connect()
-        self._apply_theme()
+        self.setAutoFillBackground(True)
+        on_theme(self._fit)
         self.set_strip_mode(StripMode.HIDDEN)
 
     @property
@@ -169,37 +167,20 @@ class WizardShell(Themed):
                 self._place_toast()
         return super().eventFilter(watched, event)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
-
     def _build(self) -> None:
         for scroll in (self._scroll, self._outer):
             scroll.setWidgetResizable(True)
-            scroll.setFrameShape(QFrame.Shape.NoFrame)
             scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
             scroll.setMinimumSize(1, 1)  # the hint of a scroll area would be more than a low window has
         self._scroll.setWidget(self._pages)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.banner)
-        self._middle = QVBoxLayout()
-        self._middle.setSpacing(0)
-        self._middle.addLayout(self._banner_row)
-        self._middle.addWidget(self._scroll, 1)
-        self._column = QWidget()
-        right = QVBoxLayout(self._column)
-        right.setContentsMargins(0, 0, 0, 0)
-        right.setSpacing(0)
-        right.addWidget(self.header)
-        right.addWidget(self.strip)
-        right.addLayout(self._middle, 1)
-        right.addWidget(self.bar)
-        self._outer.setWidget(self._column)
+        scaled(self._scroll.setMinimumHeight, LEAST_PAGE)
+        self._banner_row = lay_out(QVBoxLayout(), self.banner)
+        self._middle = lay_out(QVBoxLayout(), self._banner_row, (self._scroll, 1), spacing=0)
+        column = QWidget()
+        lay_out(QVBoxLayout(column), self.header, self.strip, (self._middle, 1), self.bar, margins=0, spacing=0)
+        self._outer.setWidget(column)
         self._outer.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(self.rail)
-        row.addWidget(self._outer, 1)
+        lay_out(QHBoxLayout(self), self.rail, (self._outer, 1), margins=0, spacing=0)
 
     def _connect(self) -> None:
         self.header.fold.toggled.connect(self._on_fold_toggled)
@@ -222,7 +203,6 @@ class WizardShell(Themed):
         self.rail.set_form(RailForm.COMPACT if self._is_compact else form)
         self.header.set_compact(self._is_compact)
         self.strip.set_compact(self._is_compact)
-        self._scroll.setMinimumHeight(px(LEAST_PAGE))
         free = self.width() - self.rail.width()
         beside = max(free - px(CONTENT), 0) // 2
         self._middle.setContentsMargins(beside, 0, beside, 0)
@@ -298,10 +278,7 @@ class WizardShell(Themed):
             self.header.fold.setChecked(True)
 
     def _on_recording_changed(self, is_recording: bool) -> None:
-        """Keep the banner's place free while recording: what is read then must not jump.
-
-        A page that has a place of its own for messages while recording needs no second one.
-        """
+        """Reserve the banner's place while recording so that nothing jumps, unless the page has its own place."""
         policy = self.banner.sizePolicy()
         policy.setRetainSizeWhenHidden(is_recording and not getattr(self.page, "keeps_place_for_messages", False))
         self.banner.setSizePolicy(policy)
@@ -311,23 +288,19 @@ class WizardShell(Themed):
         if self.bar.state.recording is not None:
             self._outer.ensureWidgetVisible(self.bar.primary, 0, px(8))
 
-    def _apply_theme(self) -> None:
-        self._fit()
-        self.update()
 
-
-class _Fade(QWidget):
+class _Fade(QLabel):
     """The page that was there, as a picture over the one that is, going away."""
 
     def __init__(self, scroll: QScrollArea) -> None:
         super().__init__(scroll.viewport())
         self._under = scroll.viewport()
-        self._picture = QPixmap()
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._run = QVariantAnimation(self)
+        effect = QGraphicsOpacityEffect(self)
+        self.setGraphicsEffect(effect)
+        self._run = QPropertyAnimation(effect, b"opacity", self)
         self._run.setStartValue(1.0)
         self._run.setEndValue(0.0)
-        self._run.valueChanged.connect(self.update)
         self._run.finished.connect(self.end)
         self.hide()
 
@@ -337,7 +310,7 @@ class _Fade(QWidget):
         duration = duration_ms(FADE_MS, current_theme())
         if duration == 0 or not self._under.isVisible():
             return
-        self._picture = self._under.grab()
+        self.setPixmap(self._under.grab())
         self.setGeometry(self._under.rect())
         self._run.setDuration(duration)
         self.show()
@@ -346,10 +319,5 @@ class _Fade(QWidget):
 
     def end(self) -> None:
         self._run.stop()
-        self._picture = QPixmap()
+        self.setPixmap(QPixmap())
         self.hide()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setOpacity(float(self._run.currentValue()))
-        painter.drawPixmap(0, 0, self._picture)

@@ -29,30 +29,17 @@ class StepId(Enum):
 class Step(QObject):
     """Made once per visit; its page once it is entered, and shown the visit as it is whenever that happens.
 
-    Signals
-    -------
-    changed
-        The bar, or the step's row in the rail, is another one now.
-    done
-        Nothing is left to do here: the wizard goes on to the next step.
-    reported
-        What happened, and what follows or what to do: for the banner. Empty: the last word no longer holds.
-    jumped
-        Another step, by its StepId, is where to go on.
-    offered
-        Something was done that can be undone: what, for the toast; `undo` takes it back.
-    demonstration_required
-        A visit of the demonstration's patient is to begin in place of this one.
+    `reported`: what happened, and what follows or what to do: for the banner. Empty: the last word no longer holds.
     """
 
     id: ClassVar[StepId]
 
-    changed = Signal()
-    done = Signal()
-    jumped = Signal(object)
+    changed = Signal()  # the bar, or the step's row in the rail, is another one now
+    done = Signal()  # nothing is left to do here: the wizard goes on to the next step
+    jumped = Signal(object)  # another step, by its StepId, is where to go on
     reported = Signal(str, str)
-    offered = Signal(str)
-    demonstration_required = Signal()
+    offered = Signal(str)  # something was done that can be undone: what, for the toast; `undo` takes it back
+    demonstration_required = Signal()  # A visit of the demonstration's patient is to begin in place of this one
 
     def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -104,10 +91,7 @@ class Step(QObject):
         raise NotImplementedError
 
     def prepare(self) -> bool:
-        """Make the next part of what would take long when it comes into sight; whether there was one.
-
-        The page itself is there already.
-        """
+        """Build the next slow part of the page in advance, and give whether there was one."""
         return False
 
     def enter(self) -> None:

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
     from app.storage.opened import OpenedLibrary
+    from app.wizard.memory_fetches import MemoryFetches
     from core.calibration.rest import Rest
     from core.hip.results import HipIdentification
     from core.live.sensors import LiveSensor
@@ -59,30 +60,18 @@ DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are k
 class Visit(QObject):
     """`session` is None until the patient is known. Nothing of it is lost when this object goes: all is in the library.
 
-    Signals
-    -------
-    changed
-        The session's row, or what is known of zero and standing.
-    resumed
-        A session of the library has been read, with its recordings.
-    earlier_read
-        The patient's visits before this one, each as the session without samples and its analysis, in order of time.
-    refused
-        What the library or a source refused, and what to do.
-    merged
-        What another station changed of the same meanwhile, in two sentences.
-    asked
-        An EditQuestion: what both changed; it is answered by `settle`.
+    `earlier_read`: the patient's visits before this one, each as the session without samples and its analysis, in order
+    of time.
     """
 
-    changed = Signal()
+    changed = Signal()  # the session's row, or what is known of zero and standing
     changed_elsewhere = Signal()  # by another station of the clinic: what is held here is as it was before
     deleted_elsewhere = Signal(str, str)
-    resumed = Signal()
+    resumed = Signal()  # A session of the library has been read, with its recordings
     earlier_read = Signal(object)
-    refused = Signal(str, str)
-    merged = Signal(str, str)
-    asked = Signal(object)
+    refused = Signal(str, str)  # what the library or a source refused, and what to do
+    merged = Signal(str, str)  # what another station changed of the same meanwhile, in two sentences
+    asked = Signal(object)  # an EditQuestion: what both changed; it is answered by `settle`
 
     def __init__(
         self,
@@ -347,10 +336,8 @@ class Visit(QObject):
     @property
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
-        idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
-        idle = idle and self.recordings.fetches.is_idle
-        return idle and not (self.is_asking or self.is_saving)
+        is_idle = self.recordings.is_idle and all(part.is_idle for part in self._with_threads)
+        return is_idle and not (self.is_asking or self.is_saving)
 
     @property
     def is_saving(self) -> bool:
@@ -359,13 +346,13 @@ class Visit(QObject):
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
-        self.recordings.fetches.finish()
-        self.sensors.finish()
-        self.evaluation.finish()
-        self.reviewing.finish()
-        self.preview.finish()
-        self.looking.finish()
-        self.comparing.finish()
+        for part in self._with_threads:
+            part.finish()
+
+    @property
+    def _with_threads(self) -> "tuple[MemoryFetches | WornSensors | Evaluation | Reviewing | Background, ...]":
+        fetches, pages = self.recordings.fetches, (self.preview, self.looking, self.comparing)
+        return (fetches, self.sensors, self.evaluation, self.reviewing, *pages)
 
     @property
     def is_asking(self) -> bool:
@@ -474,7 +461,7 @@ class Visit(QObject):
                 tr("Repeat standing still and free motion before the next walk."),
             )
 
-    def _on_recording_ended(self, _take: SessionRecording) -> None:
+    def _on_recording_ended(self) -> None:
         self.evaluate()
 
     def _on_recordings_changed(self) -> None:

@@ -1,11 +1,11 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from uuid import UUID
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import QTimer, Signal, SignalInstance
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.editing.question import EditQuestion
@@ -124,10 +124,7 @@ class Wizard(QWidget):
         self._go_to(StepId.PATIENT)
 
     def show_session(self, session_id: UUID, *, is_for_report: bool = False) -> None:
-        """Look at what came of a session, or go on with it where nothing has come of it yet.
-
-        `is_for_report`: its report is to be written, where that can be.
-        """
+        """Show a session's results, or resume it where there are none yet; `is_for_report`: go to the report."""
         self._begin_visit()
         self._to_resume, self._is_for_report = session_id, is_for_report
         self._on_resume_due()
@@ -198,7 +195,6 @@ class Wizard(QWidget):
         visit = Visit(self._controller, choices(), self)
         self._visit = visit
         visit.source_before = self._settings.latest_source
-        visit.sensors.opened.connect(self._on_source_opened)
         steps = (
             PatientStep(visit, self),
             SensorsStep(visit, self),
@@ -210,42 +206,42 @@ class Wizard(QWidget):
         )
         self._steps = {step.id: step for step in steps}
         for step in steps:
-            step.changed.connect(self._on_step_changed)
+            step.changed.connect(self._show)
             step.done.connect(self._on_step_done)
             step.jumped.connect(self.go_to)
             step.reported.connect(self._show_message)
             step.offered.connect(self._on_offered)
             step.demonstration_required.connect(self._on_demonstration_required)
-        for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
-            signal.connect(self._on_visit_changed)
-        visit.resumed.connect(self._on_resumed)
-        visit.changed_elsewhere.connect(self._on_changed_elsewhere)
-        visit.deleted_elsewhere.connect(self._show_message)
-        visit.refused.connect(self._on_refused)
-        visit.merged.connect(self._show_message)
+        for signal, slot in self._connections_of(visit):
+            signal.connect(slot)
         visit.asked.connect(self._on_asked)
-        visit.recordings.troubled.connect(self._on_troubled)
-        visit.recordings.begun.connect(self.shell.banner.hide)
         self._current = StepId.PATIENT
         self._timer.start()
         self._to_prepare = [*steps]
         self._preparing.start()
         return visit
 
+    def _connections_of(self, visit: Visit) -> "list[tuple[SignalInstance, Callable[..., object]]]":
+        """Signals of a visit that are followed while it is in sight, with their slots, in the order of connecting."""
+        changes = (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done)
+        return [
+            (visit.sensors.opened, self._on_source_opened),
+            *((signal, self._on_visit_changed) for signal in changes),
+            (visit.resumed, self._on_resumed),
+            (visit.changed_elsewhere, self._on_changed_elsewhere),
+            (visit.deleted_elsewhere, self._show_message),
+            (visit.refused, self._on_refused),
+            (visit.merged, self._show_message),
+            (visit.recordings.troubled, self._on_troubled),
+            (visit.recordings.begun, self.shell.banner.hide),
+        ]
+
     def _listen_no_more(self, visit: Visit) -> None:
         """What comes of a visit that was left is not the next one's; a refusal is shown where one is then."""
-        for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
-            signal.disconnect(self._on_visit_changed)
-        visit.resumed.disconnect(self._on_resumed)
-        visit.sensors.opened.disconnect(self._on_source_opened)
-        visit.changed_elsewhere.disconnect(self._on_changed_elsewhere)
-        visit.deleted_elsewhere.disconnect(self._show_message)
-        visit.refused.disconnect(self._on_refused)
-        visit.refused.connect(self._controller.refused)
-        visit.merged.disconnect(self._show_message)
-        visit.merged.connect(self._controller.refused)
-        visit.recordings.troubled.disconnect(self._on_troubled)
-        visit.recordings.begun.disconnect(self.shell.banner.hide)
+        for signal, slot in self._connections_of(visit):
+            signal.disconnect(slot)
+        for signal in (visit.refused, visit.merged):
+            signal.connect(self._controller.refused)
 
     def go_to(self, goal: StepId) -> None:
         """Go to a step, if it can be entered and the current one left; else say why not."""
@@ -466,9 +462,6 @@ class Wizard(QWidget):
             self._show_message(reason, "")
         else:
             self.settings_required.emit()
-
-    def _on_step_changed(self) -> None:
-        self._show()
 
     def _on_step_done(self) -> None:
         if self.sender() is self.current and self._current is not StepId.REPORT:

@@ -36,15 +36,9 @@ class Corrected:
 
 
 class WornCorrections(EditedRecord[Corrected]):
-    """One correction is made at a time; what is asked for meanwhile is made after it.
+    """One correction is made at a time; what is asked for meanwhile is made after it."""
 
-    Signals
-    -------
-    corrected
-        The session and its recordings, read again.
-    """
-
-    corrected = Signal(object, object)
+    corrected = Signal(object, object)  # the session and its recordings, read again
 
     def __init__(
         self, controller: LibraryController, sensors: WornSensors, recordings: SessionRecordings, parent: QObject
@@ -65,10 +59,7 @@ class WornCorrections(EditedRecord[Corrected]):
         self._once_ended = self._sensors.placed()
 
     def swap_sides(self) -> None:
-        """Say that left and right were worn the other way round in all recordings; they are read again.
-
-        Done again, it is undone. So are the sensors that are worn now, and what is recorded next.
-        """
+        """Swap left and right in all recordings, worn sensors and later recordings; a second call undoes it."""
         if self._is_busy:
             self._must_swap = not self._must_swap
             return
@@ -86,8 +77,7 @@ class WornCorrections(EditedRecord[Corrected]):
         self._correct(worn, self._seen(), self._sensors.placed() or None)
 
     def place_as_stated_now(self) -> None:
-        """Report to the library that all since the sensors were strapped on was worn as stated now; it is read
-        again."""
+        """Store that all recordings since strapping were worn as stated now, and read them again."""
         self._place(self._sensors.placed())
 
     def _place(self, placed: Mapping[Site, PlacedSensor]) -> None:

@@ -14,8 +14,9 @@ from app.system.progress import Report
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
 from app.wording.body import name_of, spelled_out
-from app.wording.translation import capitalised, filled, joined, later, tr
+from app.wording.translation import capitalised, joined, later, tr
 from app.workers.background import Background, Work
+from app.workers.refusals import refusal_of
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
 from core.samples import SensorInfo
@@ -307,8 +308,7 @@ class WornSensors(QObject):
         if isinstance(error, SetUpFirstError):
             self.set_up_required.emit(error.key)
         elif isinstance(error, SourceRefusedError):
-            what, remedy = filled(error.what, error.values), filled(error.remedy, error.values)
-            self.refused.emit(f"{what}.", f"{remedy}.")
+            self.refused.emit(*refusal_of(error))
         else:
             _log.error("a source did not open", exc_info=error)
             name = choice.name if choice is not None else tr("This source")

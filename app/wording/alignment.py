@@ -116,10 +116,7 @@ def since_in_words(change: AlignmentChange | None) -> str:
 
 
 def to_do_in_words(changes: Sequence[NetChange]) -> str:
-    """Say what is to be turned; where a screw is turned its angle comes by itself and is not stated.
-
-    "Foot, front screw ½ turn in; foot 4 mm forward; pylon −3 mm".
-    """
+    """State what to turn: "Foot, front screw ½ turn in; foot 4 mm forward"; turned screws without angle."""
     return _line(changes, has_angle_beside_turns=False)
 
 

@@ -345,10 +345,7 @@ WHOLE_SESSION = "session"  # what a finding about no part in particular gives as
 
 
 def sentence(finding: Finding) -> str:
-    """Give a finding in words: where, what happened, what to do or what follows.
-
-    A finding whose sentence is missing, or lacks a figure, is still shown, by its key and its figures.
-    """
+    """Give a finding in words: where, what, and what to do; without a sentence, by its key and figures."""
     known = {name: _stated(name, value) for name, value in finding.numbers.items() if _is_known(value)}
     if reasons := _reasons(finding):
         known["reasons"] = reasons

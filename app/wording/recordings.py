@@ -45,16 +45,7 @@ class ShownName:
 
 
 def condition_letters(recordings: Sequence[Recording]) -> dict[str, str]:
-    """Give the letter of each kept walk's condition, by the walk's name.
-
-    Letters follow the order in which conditions were first walked; sensors strapped again begin another, and so does
-    each walk without a condition. What is discarded has none. After Z there are none.
-
-    Parameters
-    ----------
-    recordings
-        Those of one session, in order of time.
-    """
+    """Give each kept walk's condition letter by walk name; renewed straps begin another, empty beyond Z."""
     letters = dict(zip(dict.fromkeys(_conditions(recordings).values()), LETTERS, strict=False))
     return {name: letters.get(condition, "") for name, condition in _conditions(recordings).items()}
 

@@ -12,6 +12,8 @@ from pathlib import Path
 from string import Formatter
 from typing import Any
 
+from app.wording.pseudo_language import PseudoLanguage
+
 DOMAIN = "gaitwright"
 LOCALE = Path(str(files("resources") / "locale"))
 _catalogue = gettext.NullTranslations()
@@ -49,15 +51,10 @@ def _spoken(message: str, language: str) -> str:
 
 
 def use_language(language: str) -> None:
-    """Speak `language` from now on, as "de", as far as there is a catalogue of it; else English.
-
-    "pseudo" is no language: it is English made as long as German, which tests show on every page.
-    """
+    """Use `language`, as "de", where a catalogue exists, else English; "pseudo": lengthened English for tests."""
     global _catalogue, _language
     _language = language if gettext.find(DOMAIN, LOCALE, languages=[language]) else "en"
     if language == "pseudo":
-        from app.wording.pseudo_language import PseudoLanguage
-
         _catalogue = PseudoLanguage()
     else:
         _catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)

@@ -20,18 +20,32 @@ from app.workers.refusals import refusal_of
 P = ParamSpec("P")
 T = TypeVar("T")
 Failed = Callable[[str, str], object]
+Progressed = Callable[[float, str], object]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Job:
     call: Callable[[], object]
-    done: "WeakMethod[Callable[..., object]] | None"
-    failed: "WeakMethod[Failed] | None"
-    owner: "ref[QObject]"
+    done: "WeakMethod[Callable[..., object]] | None" = None
+    failed: "WeakMethod[Failed] | None" = None
+    owner: "ref[QObject] | None" = None
+    progressed: "WeakMethod[Progressed] | None" = None
+
+    @classmethod
+    def of(
+        cls,
+        call: Callable[[], object],
+        done: Callable[..., object] | None,
+        failed: Failed | None,
+        owner: QObject,
+        progressed: "Progressed | None" = None,
+    ) -> "Job":
+        """A job whose asker may be gone before it is done."""
+        return cls(call, weak(done), weak(failed), ref(owner), weak(progressed))
 
     def listening(self, method: "WeakMethod[Callable[P, object]] | None") -> Callable[P, object] | None:
         """The method, where it and its owner are still there."""
-        owner = self.owner()
+        owner = self.owner() if self.owner is not None else None
         return method() if method is not None and owner is not None and isValid(owner) else None
 
 
@@ -67,7 +81,7 @@ class JobThread(QThread):
         """Set once all that was asked until now is done."""
         passed = Event()
         if self.isRunning():
-            self.ask(Job(passed.set, None, None, ref(self)))
+            self.ask(Job(passed.set))
         else:
             passed.set()
         return passed

@@ -13,37 +13,23 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
-from weakref import WeakMethod, ref
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from weakref import WeakMethod
 
 from PySide6.QtCore import QObject, Signal
 
 from app.system.progress import Report
 from app.wording.translation import tr, tr_n
 from app.workers.background import Background
-from app.workers.jobs import Failed, Job, JobThread, nothing, weak
-from app.workers.library_state import (
-    Closed,
-    Joined,
-    KeptLogIn,
-    LibraryPlace,
-    NotOpened,
-    OpenedState,
-    Reopened,
-    Unlocked,
-)
+from app.workers.jobs import Failed, Job, JobThread, Progressed, nothing, weak
+from app.workers.library_state import Closed, KeptLogIn, NotOpened, OpenedState, Reopened, Unlocked
 from app.workers.refusals import Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
-    from app.storage.clinic.moving import Moved
-    from app.storage.key_change import ChangedKey
-    from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
-    from app.storage.rollback import Rollback
     from app.workers.library_holder import LibraryHolder
     from app.workers.library_watch import LibraryWatch
 
-P = ParamSpec("P")
 T = TypeVar("T")
 
 
@@ -88,12 +74,11 @@ class LibraryController(QObject):
         self._quiet: Callable[[], object] | None = None  # begins the long work again, where nobody waits for it
         self._waiting: list[Callable[[], object]] = []  # quiet work that began too early, or was interrupted
         self._long_ended: WeakMethod[Callable[[bool], object]] | None = None
-        self._long_progressed: WeakMethod[Callable[[float, str], object]] | None = None
 
     @cached_property
     def _holder(self) -> "LibraryHolder":
         """Made by the first call: storage is imported by the thread, for that takes longer than the window may."""
-        from app.workers.library_holder import LibraryHolder
+        from app.workers.library_holder import LibraryHolder  # the thread waits, not the window
 
         return LibraryHolder(self._seen)
 
@@ -114,11 +99,8 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)` as long as `owner` is there.
-
-        Both are bound methods. Without `failed` a refusal is reported by the signal `refused`.
-        """
-        self._ask(self._calls, Job(lambda: call(self._holder.library), weak(done), weak(failed), ref(owner)))
+        """Run `call` on the thread, then `done(result)` or `failed(what, remedy)`, bound, while `owner` lives."""
+        self._ask(self._calls, Job.of(lambda: call(self._holder.library), done, failed, owner))
 
     def record(
         self,
@@ -127,34 +109,27 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """As `run`, for beginning and ending recordings: whatever else the library is asked is not waited for.
-
-        The `Future` that `call` is given is done when all that was asked before has been.
-        """
+        """As `run`, for beginning and ending recordings, without waiting; the `Future`: earlier calls done."""
         if self._state is None:
-            self._show_refusal(Job(nothing, None, weak(failed), ref(owner)), *nothing_open())
+            self._show_refusal(Job.of(nothing, None, failed, owner), *nothing_open())
             return
         library, turn = self._state.library, Future[None]()
-        self._ask(self._calls, Job(lambda: turn.set_result(None), None, None, ref(self)))
-        self._ask(self._recordings, Job(lambda: call(library, turn), weak(done), weak(failed), ref(owner)))
+        self._ask(self._calls, Job(lambda: turn.set_result(None)))
+        self._ask(self._recordings, Job.of(lambda: call(library, turn), done, failed, owner))
 
     def run_long(
         self,
         work: Callable[["OpenedLibrary", Report], T],
         done: Callable[[T], object] | None,
         failed: Failed | None,
-        progressed: Callable[[float, str], object] | None,
+        progressed: Progressed | None,
         owner: QObject,
         *,
         is_quiet: bool = False,
     ) -> None:
-        """Do what takes long, an import or a backup, beside the calls; one at a time, and `stop_long` ends it.
-
-        Nothing more is received from what was stopped. Quiet work, which nobody asked for, waits for the other, and
-        gives way to it: it begins again afterwards.
-        """
-        job = Job(nothing, weak(done), weak(failed), ref(owner))
-        begin = partial(self._begin_long, work, job, weak(progressed), is_quiet=is_quiet)
+        """Run long work beside the calls, one at a time; `stop_long` ends it, quiet work yields and restarts."""
+        job = Job.of(nothing, done, failed, owner, progressed)
+        begin = partial(self._begin_long, work, job, is_quiet=is_quiet)
         if self._is_locked:
             self._held.append(begin)
         else:
@@ -168,201 +143,81 @@ class LibraryController(QObject):
         self._long_job = None
 
     def lock(self) -> None:
-        """Take the data key out of memory until `unlock`; what is asked meanwhile is done after it.
-
-        A recording goes on: its journal has a key of its own. Long work is waited for.
-        """
+        """Drop the data key until `unlock`; calls wait, long work ends first, recordings have their own key."""
         if self._state is None or self._state.is_demonstration:
             return
         self._is_to_be_locked = self._is_locked = True
         if self._long.is_idle:  # what was stopped and has not ended yet still works with the key
-            self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
-            self._calls.ask(Job(self._holder.lock, None, None, ref(self)))
+            self._wait_for_recordings()
+            self._calls.ask(Job(self._holder.lock))
 
-    def unlock(
+    def call(
         self,
-        code: str,
-        passphrase: str,
-        delay: "LoginDelay | None",
-        done: Callable[[None], object],
-        failed: Failed,
+        function: Callable[["LibraryHolder"], T],
+        done: Callable[[T], object] | None,
+        failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """Bring the data key back with the operator's passphrase; `delay` counts the wrong ones."""
-        job = Job(lambda: self._holder.unlock(code, passphrase, delay), weak(done), weak(failed), ref(owner))
-        self._calls.ask(job)
+        """As `run`, for what is done under the lock too, or where no library is open."""
+        self._calls.ask(Job.of(lambda: function(self._holder), done, failed, owner))
 
-    def change_key(
+    def reopen(
         self,
-        leaving: str,
-        done: Callable[["ChangedKey"], object],
+        work: Callable[["LibraryHolder", Report], Reopened],
+        done: Callable[..., object],
         failed: Failed,
-        progressed: Callable[[float, str], object],
+        progressed: Progressed,
         owner: QObject,
     ) -> None:
-        """Give the library a new data key, without the operator `leaving` if one is named; nothing else meanwhile.
+        """Let the thread do what closes the library and opens it again, as a change of its key; nothing else meanwhile.
 
         Nor is the folder watched: its database is replaced, and nothing must come home that has the old key.
         """
-        self._reopen(
-            lambda report: self._holder.change_key(leaving, report), weak(done), weak(failed), weak(progressed), owner
-        )
-
-    def move_to_server(
-        self,
-        address: str,
-        password: str,
-        place: str,
-        done: Callable[["Moved"], object],
-        failed: Failed,
-        progressed: Callable[[float, str], object],
-        owner: QObject,
-    ) -> None:
-        """Take the library from its folder to a clinic's server, and go on with it there; as `change_key`."""
-        self._reopen(
-            lambda report: self._holder.move_to_server(address, password, place, report),
-            weak(done),
-            weak(failed),
-            weak(progressed),
-            owner,
-        )
-
-    def bring_back(
-        self,
-        done: Callable[["Moved"], object],
-        failed: Failed,
-        progressed: Callable[[float, str], object],
-        owner: QObject,
-    ) -> None:
-        """Take the library from the clinic's server into this station's folder, and go on there; as `change_key`."""
-        self._reopen(lambda report: self._holder.bring_back(report), weak(done), weak(failed), weak(progressed), owner)
-
-    def join(
-        self,
-        folder: Path,
-        address: str,
-        password: str,
-        place: str,
-        done: Callable[[Joined], object],
-        failed: Failed,
-        owner: QObject,
-    ) -> None:
-        """Make a new folder that of a station of the library at a clinic's server; nothing is opened.
-
-        `password` goes into the address; `place` names the shared place of recordings, where it has another name here.
-        """
-        job = Job(lambda: self._holder.join(folder, address, password, place), weak(done), weak(failed), ref(owner))
-        self._calls.ask(job)
-
-    def _reopen(
-        self,
-        work: Callable[[Report], Reopened],
-        done: "WeakMethod[Callable[..., object]] | None",
-        failed: "WeakMethod[Failed] | None",
-        progressed: "WeakMethod[Callable[[float, str], object]] | None",
-        owner: QObject,
-    ) -> None:
-        """Let the thread do what closes the library, and opens it again."""
-        job = Job(lambda: work(report), done, failed, ref(owner))
+        job = Job.of(lambda: work(self._holder, report), done, failed, owner, progressed)
         if self._state is None:
             self._show_refusal(job, *nothing_open())
             return
         if self._long.is_busy:
-            self._show_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
+            self._show_refusal(job, *_still_running())
             return
         if self.gone_words is not None:
             self._show_refusal(job, *self.gone_words)
             return
 
         def report(share: float, _what: str) -> None:
-            self._calls.reported.emit(job, _Progress(share, progressed))
+            self._calls.reported.emit(job, _Progress(share))
 
         self._end_watch()
-        self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
+        self._wait_for_recordings()
         self._state, self._reopening = None, job
         self._calls.ask(job)
 
-    def accept_rollback(
-        self, rollback: "Rollback", done: Callable[[None], object], failed: Failed, owner: QObject
-    ) -> None:
-        """Go on from the library's older state; an administrator's decision, which its audit keeps."""
-
-        def accept(opened: "OpenedLibrary") -> None:
-            if self._holder.seen is not None:
-                self._holder.seen.accept(opened.library, rollback)
-
-        self.run(accept, done, failed, owner)
-
-    def look(self, folder: Path, done: Callable[[LibraryPlace], object], failed: Failed, owner: QObject) -> None:
-        """Find out who may open the library in `folder`."""
-        self._calls.ask(Job(lambda: self._holder.look(folder), weak(done), weak(failed), ref(owner)))
-
-    def open(
-        self,
-        folder: Path,
-        passphrase: str,
-        code: str = "",
-        must_remember: bool = False,
-        delay: "LoginDelay | None" = None,
-    ) -> None:
-        """Open a library with an operator's passphrase; `must_remember`: from now on the keyring may do so, too.
-
-        `delay` counts the wrong ones.
-        """
-
-        self._open(lambda: self._holder.open(folder, passphrase, code, must_remember, delay))
-
-    def open_away(self, folder: Path, passphrase: str, code: str, delay: "LoginDelay | None" = None) -> None:
-        """Open what a clinic's station works with while the server does not answer."""
-        self._open(lambda: self._holder.open_away(folder, passphrase, code, delay))
-
-    def open_remembered(self, folder: Path, code: str) -> None:
-        """Open a library as this machine's keyring allows."""
-
-        self._open(lambda: self._holder.open_remembered(folder, code))
-
-    def open_recovered(self, folder: Path, recovery_key: str, code: str, passphrase: str) -> None:
-        """Open a library with its recovery key, and give the operator a new passphrase."""
-
-        self._open(lambda: self._holder.open_recovered(folder, recovery_key, code, passphrase))
-
-    def create(self, folder: Path, code: str, name: str, passphrase: str) -> None:
-        """Make a library whose administrator is the operator, and open it; its recovery key comes with `opened`."""
-
-        self._open(lambda: self._holder.create(folder, code, name, passphrase))
+    def open(self, opening: Callable[["LibraryHolder"], OpenedState | NotOpened]) -> None:
+        """Let the thread open a library: `opened` or `not_opened` comes of it."""
+        self._end_library()
+        self._opening = Job(lambda: opening(self._holder))
+        self._calls.ask(self._opening)
 
     def open_demonstration(self) -> None:
         """Open a library of its own, gone when it is closed, with simulated patients who have no visits yet.
 
-        Whoever is logged in to another library stays so until `forget`: `open_kept` leads back.
+        Whoever is logged in to another library stays so until they are forgotten: `open_kept` leads back.
         """
         must_keep = not self._is_locked
-        self._open(lambda: self._holder.open_demonstration(must_keep))
-
-    def open_kept(self, kept: KeptLogIn | None = None) -> None:
-        """Open the library again that the demonstration closed, or the window before this one, which `kept` it."""
-        self._open(lambda: self._holder.open_kept(kept))
+        self.open(lambda holder: holder.open_demonstration(must_keep))
 
     @property
     def kept(self) -> KeptLogIn | None:
         """Who is still logged in to the library that was open before the demonstration."""
         return self._holder.kept
 
-    def forget(self) -> None:
-        """Log out who is logged in behind the demonstration."""
-        self._calls.ask(Job(self._holder.forget, None, None, ref(self)))
-
     def close(self) -> None:
         """Close the library that is open; what is asked later is refused until another is."""
         self._end_library()
-        self._calls.ask(Job(lambda: self._holder.end(), None, None, ref(self)))
+        self._calls.ask(Job(lambda: self._holder.end()))
 
     def finish(self, *, must_keep: bool = False) -> KeptLogIn | None:
-        """Close, and wait for all threads: for the end of the program.
-
-        `must_keep`: or of a window that another one follows. Gives what opens the library again there, unless it is
-        locked.
-        """
+        """Close and await all threads at the end; `must_keep`: give what reopens it, None while locked."""
         self._must_keep = must_keep and not self._is_locked
         self._ask_held()  # a recording is ended under a lock too; its row follows at the next start
         self._end_library()
@@ -378,34 +233,21 @@ class LibraryController(QObject):
         else:
             self._holder.end()
 
-    def _open(self, opening: Callable[[], OpenedState | NotOpened]) -> None:
-        self._end_library()
-        self._opening = Job(opening, None, None, ref(self))
-        self._calls.ask(self._opening)
-
-    def _begin_long(
-        self,
-        work: Callable[["OpenedLibrary", Report], object],
-        job: Job,
-        progressed: "WeakMethod[Callable[[float, str], object]] | None",
-        *,
-        is_quiet: bool,
-    ) -> None:
+    def _begin_long(self, work: Callable[["OpenedLibrary", Report], object], job: Job, *, is_quiet: bool) -> None:
         if self._state is None:
             self._show_refusal(job, *nothing_open())
             return
-        begin = partial(self._begin_long, work, job, progressed, is_quiet=is_quiet)
+        begin = partial(self._begin_long, work, job, is_quiet=is_quiet)
         if self._long.is_busy:  # what was stopped is waited for by the next
             if is_quiet:
                 self._waiting.append(begin)
                 return
             if self._quiet is None:
-                what, remedy = tr("Another task is still running."), tr("Wait until it has finished, or stop it.")
-                self._show_refusal(job, what, remedy)
+                self._show_refusal(job, *_still_running())
                 return
             self._waiting.append(self._quiet)
         self._quiet = begin if is_quiet else None
-        self._long_job, self._long_progressed = job, progressed
+        self._long_job = job
         library, lock = self._state.library, self._holder.long_work
 
         def locked(report: Report) -> object:
@@ -419,6 +261,10 @@ class LibraryController(QObject):
             self._held.append(partial(lane.ask, job))
         else:
             lane.ask(job)
+
+    def _wait_for_recordings(self) -> None:
+        """What is asked next is done once all recordings asked for have begun or ended."""
+        self._calls.ask(Job(self._recordings.passed().wait))
 
     def _ask_held(self) -> None:
         self._is_to_be_locked = self._is_locked = False
@@ -443,7 +289,7 @@ class LibraryController(QObject):
         self.stop_long()
         self._end_watch()
         if self._state is not None:
-            self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
+            self._wait_for_recordings()
         self._state = self._reopening = self._opening = None
 
     def _on_reported(self, job: Job, outcome: object) -> None:
@@ -456,12 +302,8 @@ class LibraryController(QObject):
             self._begin_watch(outcome)
             self.opened.emit(outcome)
         elif isinstance(outcome, _Progress):
-            if progressed := job.listening(outcome.received):
+            if progressed := job.listening(job.progressed):
                 progressed(outcome.share, "")
-        elif isinstance(outcome, Unlocked):
-            self._ask_held()
-            if done := job.listening(job.done):
-                done(None)
         elif isinstance(outcome, Reopened):
             self._on_reopened(job, outcome)
         elif isinstance(outcome, NotOpened):
@@ -471,8 +313,11 @@ class LibraryController(QObject):
                 self.can_work_away.emit()
         elif isinstance(outcome, Closed):
             self.closed.emit()
-        elif done := job.listening(job.done):
-            done(outcome)
+        else:
+            if isinstance(outcome, Unlocked):
+                self._ask_held()
+            if done := job.listening(job.done):
+                done(outcome)
 
     def _begin_watch(self, state: OpenedState) -> None:
         from app.workers.library_watch import LibraryWatch  # storage, as above
@@ -492,7 +337,7 @@ class LibraryController(QObject):
         watch, self._watch, self.gone_words = self._watch, None, None
         if watch is not None:
             watch.end()
-            self._calls.ask(Job(watch.ended, weak(self._on_watch_ended), None, ref(self)))
+            self._calls.ask(Job.of(watch.ended, self._on_watch_ended, None, self))
 
     def _on_watch_ended(self, watch: "LibraryWatch") -> None:
         watch.deleteLater()
@@ -561,7 +406,7 @@ class LibraryController(QObject):
 
     def _on_long_progressed(self, share: float, what: str) -> None:
         job = self._long_job
-        if job is not None and (progressed := job.listening(self._long_progressed)):
+        if job is not None and (progressed := job.listening(job.progressed)):
             progressed(share, what)
 
     def _on_long_done(self, result: object) -> None:
@@ -583,4 +428,7 @@ class LibraryController(QObject):
 
 class _Progress(NamedTuple):
     share: float
-    received: "WeakMethod[Callable[[float, str], object]] | None"
+
+
+def _still_running() -> Refusal:
+    return Refusal(tr("Another task is still running."), tr("Wait until it has finished, or stop it."))

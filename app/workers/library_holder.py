@@ -85,8 +85,18 @@ class LibraryHolder:
         return replace(state, recovery_key=recovery_key)
 
     def open(
-        self, folder: Path, passphrase: str, code: str, must_remember: bool, delay: LoginDelay | None
+        self,
+        folder: Path,
+        passphrase: str,
+        code: str = "",
+        must_remember: bool = False,
+        delay: LoginDelay | None = None,
     ) -> OpenedState | NotOpened:
+        """Open with an operator's passphrase; `must_remember`: from now on the keyring may do so, too.
+
+        `delay` counts the wrong ones.
+        """
+
         def opening() -> Opening:
             with delay.trying(code) if delay is not None else nullcontext():
                 library = open_library(folder, passphrase, code)
@@ -96,7 +106,9 @@ class LibraryHolder:
 
         return self._open(opening, folder)
 
-    def open_away(self, folder: Path, passphrase: str, code: str, delay: LoginDelay | None) -> OpenedState | NotOpened:
+    def open_away(
+        self, folder: Path, passphrase: str, code: str, delay: LoginDelay | None = None
+    ) -> OpenedState | NotOpened:
         """Open what the station in `folder` works with while the clinic's server does not answer."""
 
         def opening() -> Opening:
@@ -122,7 +134,7 @@ class LibraryHolder:
 
         return self._open(opening)
 
-    def open_kept(self, kept: KeptLogIn | None) -> OpenedState | NotOpened:
+    def open_kept(self, kept: KeptLogIn | None = None) -> OpenedState | NotOpened:
         """Open the library that was closed for a moment; `kept`: by the window before this one."""
         kept, self.kept = kept or self.kept, None
 
@@ -136,6 +148,8 @@ class LibraryHolder:
         return replace(state, is_continued=True) if isinstance(state, OpenedState) else state
 
     def open_recovered(self, folder: Path, recovery_key: str, code: str, passphrase: str) -> OpenedState | NotOpened:
+        """Open with the recovery key, and give the operator a new passphrase."""
+
         def opening() -> Opening:
             slots = slots_of(folder)
             data_key = slots.open_with_recovery_key(recovery_key)
@@ -146,6 +160,7 @@ class LibraryHolder:
         return self._open(opening)
 
     def create(self, folder: Path, code: str, name: str, passphrase: str) -> OpenedState | NotOpened:
+        """Make a library whose administrator is the operator, and open it."""
         return self._open(lambda: create_library(folder, Operator(code, name, Role.ADMINISTRATOR), passphrase))
 
     def lock(self) -> None:
@@ -159,6 +174,7 @@ class LibraryHolder:
             self.long_work.release()
 
     def unlock(self, code: str, passphrase: str, delay: LoginDelay | None) -> Unlocked:
+        """Bring the data key back with the operator's passphrase; `delay` counts the wrong ones."""
         library = self.library
         library.refuse_gone()  # else the slots only miss their file, which would count as a wrong passphrase
         with delay.trying(code) if delay is not None else nullcontext():
@@ -167,7 +183,13 @@ class LibraryHolder:
             library.data_key.refill(data_key)
         return Unlocked()
 
+    def accept_rollback(self, rollback: Rollback) -> None:
+        """Go on from the library's older state; an administrator's decision, which its audit keeps."""
+        if self.seen is not None:
+            self.seen.accept(self.library.library, rollback)
+
     def change_key(self, leaving: str, report: Report) -> Reopened:
+        """Give the library a new data key, without the operator `leaving` if one is named."""
         library = self.library
         if leaving and library.shared is not None:
             with self.long_work:
@@ -197,6 +219,7 @@ class LibraryHolder:
         return self._reopened_after(lambda: bring_back_here(library, report))
 
     def join(self, folder: Path, address: str, password: str, place: str) -> Joined:
+        """Make a folder a station of a clinic server's library; `place`: the shared place's name here."""
         try:
             join(folder, with_password(address, password), place)
         except Exception as error:  # reported where the server was named
@@ -378,13 +401,7 @@ def _is_passphrase_given(library: OpenedLibrary, operator: Operator) -> bool:
 
 
 def _begin_station(library: OpenedLibrary) -> tuple[int, Refusal | None]:
-    """What a clinic's station does first.
-
-    Returns
-    -------
-    brought, refusal
-        How many sessions that were made without the server are on it now, and why others are still here.
-    """
+    """Start up a clinic's station; give how many away sessions reached the server, and why others did not."""
     if library.shared is None:
         return 0, None
     brought, refusal = 0, None

@@ -4,6 +4,8 @@ import logging
 from datetime import datetime
 from pathlib import Path
 
+from app.demonstration import patients
+from app.demonstration.recording import add_patients
 from app.storage.backup import remove_old_backups
 from app.storage.keyring_slot import remember
 from app.storage.keys import KeyRefusedError
@@ -30,13 +32,9 @@ def let_keyring_remember(library: OpenedLibrary) -> None:
 
 def demonstration(folder: Path) -> OpenedLibrary:
     """The demonstration's library with its patients, whose visits are recorded once it is open."""
-    # numpy takes some tenths of a second that no log in is to wait for
-    from app.demonstration.patients import simulated_patients
-    from app.demonstration.recording import add_patients
-
     library = OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None)
     try:
-        add_patients(library, simulated_patients(datetime.now().astimezone()))
+        add_patients(library, patients.simulated_patients(datetime.now().astimezone()))
     except BaseException:
         library.library.close()
         raise

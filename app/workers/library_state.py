@@ -21,42 +21,23 @@ if TYPE_CHECKING:
 class OpenedState:
     """What was found on opening.
 
-    Attributes
-    ----------
-    interrupted
-        Recordings that nobody stopped, to be looked at.
-    is_end_lost
-        The library was not closed well, and what was saved last is damaged.
-    brought_home
-        Recordings that were made while the library was gone, and are in it again.
-    recovery_key
-        Of a library that was just made, to be shown once; else empty.
-    rollback
-        What this computer has seen of the library and it does not hold any more.
-    is_recovery_key_confirmed
-        Whether somebody typed the recovery key back from its sheet since it was made.
-    is_away
-        It is what a clinic's station works with while the server does not answer.
-    brought_from_away
-        How many sessions that were made without the clinic's server are on it now.
-    still_away
-        Why sessions that were made without the clinic's server are still on this computer alone.
-    is_passphrase_given
-        Whether somebody else chose the operator's passphrase: an own one comes before anything else.
-    is_continued
-        It was opened again for whoever was logged in: all that is asked first was asked before.
+    `brought_home`: recordings that were made while the library was gone, and are in it again.
+    `is_recovery_key_confirmed`: whether somebody typed the recovery key back from its sheet since it was made.
+    `still_away`: why sessions that were made without the clinic's server are still on this computer alone.
+    `is_passphrase_given`: whether somebody else chose the operator's passphrase: an own one comes before anything else.
+    `is_continued`: it was opened again for whoever was logged in: all that is asked first was asked before.
     """
 
     library: "OpenedLibrary"
     operator: "Operator"
-    interrupted: tuple["Interrupted", ...] = ()
-    is_end_lost: bool = False
+    interrupted: tuple["Interrupted", ...] = ()  # recordings that nobody stopped, to be looked at
+    is_end_lost: bool = False  # the library was not closed well, and what was saved last is damaged
     brought_home: frozenset[UUID] = frozenset()
-    recovery_key: str = field(default="", repr=False)
-    rollback: "Rollback | None" = None
+    recovery_key: str = field(default="", repr=False)  # of a library that was just made, to be shown once; else empty
+    rollback: "Rollback | None" = None  # what this computer has seen of the library and it does not hold any more
     is_recovery_key_confirmed: bool = True
-    is_away: bool = False
-    brought_from_away: int = 0
+    is_away: bool = False  # it is what a clinic's station works with while the server does not answer
+    brought_from_away: int = 0  # how many sessions that were made without the clinic's server are on it now
     still_away: Refusal | None = None
     is_passphrase_given: bool = False
     is_continued: bool = False

@@ -2,8 +2,8 @@
 
 The window, log in and what they import bring neither numpy nor the library's storage; so main_window, entry and the
 controller of the library import what does inside functions. Home and the wizard import at their top whatever they need,
-apart from what brings pyqtgraph (walking, result and findings), Typst or the formats of exports: a page that nobody has
-come to is not waited for.
+apart from the pages of results, and what brings Typst, Arrow or the formats of exports: a page that nobody has come to
+is not waited for. What stays inside functions states there what that buys (`tests/test_house_rules.py`).
 """
 
 import gc
@@ -41,10 +41,7 @@ def is_preloaded() -> bool:
 
 
 def preload(report: Report) -> None:
-    """Work for a `Background`. A module is imported whole or not at all; between two it may be stopped.
-
-    No garbage is collected meanwhile: this is not the thread on which widgets may end.
-    """
+    """Import modules as work of a `Background`, stoppable between two; without collection on this thread."""
     was_collecting = gc.isenabled()
     gc.disable()
     try:

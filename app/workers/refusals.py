@@ -1,11 +1,8 @@
 """What happened, and what to do: whatever a call of the library raised, in two sentences that can be shown."""
 
-import logging
 from typing import NamedTuple
 
-from app.wording.translation import capitalised, filled, tr
-
-_log = logging.getLogger(__name__)
+from app.wording.translation import tr
 
 
 class Refusal(NamedTuple):
@@ -23,24 +20,6 @@ def nothing_open() -> Refusal:
 
 def refusal_of(error: Exception) -> Refusal:
     """Put what was raised into two sentences; what nobody foresaw is logged."""
-    from app.storage.journal.header import JournalRefusedError
-    from app.storage.keys import KeyRefusedError
-    from app.storage.stored import LibraryError
-    from devices.files.refusal import FileRefusedError
-    from devices.live import SourceRefusedError
+    from app.workers.raised import in_two_sentences  # the storage, which whoever opens no library does without
 
-    if isinstance(error, SourceRefusedError):
-        return Refusal(f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}.")
-    if isinstance(error, LibraryError | KeyRefusedError):
-        return Refusal(f"{tr(error.what)}.", f"{tr(error.remedy)}.")
-    if isinstance(error, JournalRefusedError | FileRefusedError):
-        values = error.values if isinstance(error, FileRefusedError) else {}
-        where = tr("Where: {place}.").format(place=error.where)  # last: a path is long, and helps the fewest
-        return Refusal(f"{capitalised(filled(error.what, values))}.", f"{filled(error.remedy, values)}. {where}")
-    if isinstance(error, NothingOpenError):
-        return nothing_open()
-    _log.error("a call of the library ended early", exc_info=error)
-    if isinstance(error, OSError):
-        what = tr("A file could not be read or written ({why}).").format(why=error.strerror or type(error).__name__)
-        return Refusal(what, tr("Check the disk and the folder's permissions, then try again."))
-    return Refusal(tr("The task stopped before it was finished."), tr("Try again. See the log for details."))
+    return in_two_sentences(error)

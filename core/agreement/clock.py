@@ -49,18 +49,7 @@ class ReferenceClock:
     rate: float = 0.0
 
     def at(self, time_s: FloatArray) -> FloatArray:
-        """The reference's time at the sensors'.
-
-        Parameters
-        ----------
-        time_s : (n,)
-            On the sensors' clock.
-
-        Returns
-        -------
-        (n,)
-            Seconds on the reference's clock.
-        """
+        """Give the reference's time (n,), s, at times (n,) on the sensors' clock."""
         return time_s + self.offset_s + self.rate * (time_s - self.at_s)
 
 

@@ -88,18 +88,7 @@ def rates_of(curve: TimedAngle) -> list[RateStretch]:
 
 
 def angle_at(curve: TimedAngle, time_s: FloatArray) -> FloatArray:
-    """The angle at other instants of its clock, by a cubic spline inside of each stretch; NaN in gaps and outside.
-
-    Parameters
-    ----------
-    time_s : (m,)
-        Ascending.
-
-    Returns
-    -------
-    (m,)
-        Radians.
-    """
+    """Give the angle (m,) at ascending instants (m,), by cubic splines; NaN in gaps and outside."""
     angle_rad = np.full(len(time_s), np.nan)
     for part in stretches_of(curve):
         is_inside = (time_s >= part.time_s[0]) & (time_s <= part.time_s[-1])

@@ -38,13 +38,7 @@ class EventAgreement:
 
     @property
     def bias_s(self) -> float:
-        """Mean lateness.
-
-        Returns
-        -------
-        float
-            Seconds, NaN where none was found.
-        """
+        """Mean lateness, NaN where none was found."""
         return float(np.nanmean(self.late_s)) if self.found else float("nan")
 
     @property
@@ -59,16 +53,7 @@ def joined(parts: list[EventAgreement]) -> EventAgreement:
 
 
 def event_offset(found: Events, reference: Events) -> float:
-    """What is added to the walk's clock to give the reference's, by the events alone.
-
-    The offset that pairs most events; that of one shared clock, zero, where it pairs nearly as many, since strides
-    resemble each other.
-
-    Returns
-    -------
-    float
-        Seconds, to BIN_S; the rest is the kinds' own lateness.
-    """
+    """Give what to add to the walk's clock for the reference's, to BIN_S; 0 where 0 pairs nearly as many."""
     keys = [key for key in found if key in reference]
     apart = np.concatenate([(reference[key][:, None] - found[key][None]).ravel() for key in keys] or [np.empty(0)])
     if not len(apart):
@@ -101,19 +86,8 @@ def _compared(found_s: FloatArray, true_s: FloatArray) -> EventAgreement:
 
 
 def compare_lengths(strides: Strides, reference: FloatArray) -> FloatArray:
-    """Lengths (k, 2), measured and of the reference, of the used strides whose swing lies in one of its strides.
-
-    A reference may count strides from contact to contact or from flat foot to flat foot: both hold one swing.
-
-    Parameters
-    ----------
-    reference : (n, 3)
-        First and last instant on the walk's clock, s, and length, m.
-
-    Returns
-    -------
-    (k, 2)
-        Metres.
+    """Give lengths (k, 2) m, measured and reference, of used strides whose swing lies in a reference stride.
+    `reference` (n, 3): first and last instant on the walk's clock, s, and length, m.
     """
     pairs = []
     for toe_off_s, end_s, length_m, is_used in zip(

@@ -31,19 +31,13 @@ class PhaseError:
 class Agreement:
     """Measured less reference over one walk or recording, radians; NaN: not known.
 
-    Attributes
-    ----------
-    z_rad, m_rad
-        Root mean square error as measured, and once its mean is removed.
-    bias_rad, sd_rad
-        Mean of the error and its standard deviation (n - 1).
-    low_rad, high_rad
-        Limits of agreement: bias less and plus 1.96 sd.
-    range_error_rad, range_error_sd_rad, ranges
-        Range measured less range of the reference, mean and sd (n - 1) over `ranges` strides; without strides, of the
-        whole recording.
-    within_1_sd, within_2_sd
-        Shares of samples whose error, its mean removed, is inside one and two of the stated standard deviations.
+    `z_rad`, `m_rad`: root mean square error as measured, and once its mean is removed.
+    `bias_rad`, `sd_rad`: mean of the error and its standard deviation (n - 1).
+    `low_rad`, `high_rad`: limits of agreement: bias less and plus 1.96 sd.
+    `range_error_rad`, `range_error_sd_rad`, `ranges`: range measured less range of the reference, mean and sd (n - 1)
+    over `ranges` strides; without strides, of the whole recording.
+    `within_1_sd`, `within_2_sd`: shares of samples whose error, its mean removed, is inside one and two of the stated
+    standard deviations.
     """
 
     samples: int
@@ -89,21 +83,7 @@ def agreement_of(
     *,
     has_zero: bool = True,
 ) -> Agreement | None:
-    """What the angles of one walk differ by; None where fewer than ten samples are known to both.
-
-    Parameters
-    ----------
-    measured_rad, reference_rad : (n,)
-        At the same instants, in the same sign; NaN in gaps.
-    sd_rad : (n,)
-        What was stated of the measured angle.
-    phase : (n,)
-        Indices into PHASES.
-    strides : (k, 2)
-        First and last row of each stride.
-    has_zero
-        The measured angle has a zero; without one its height means nothing, so neither does the bias.
-    """
+    """Compare a walk's angles (n,), NaN in gaps; None for under ten samples, no bias without `has_zero`."""
     is_known = np.isfinite(measured_rad) & np.isfinite(reference_rad)
     n = int(np.count_nonzero(is_known))
     if n < MIN_SAMPLES:

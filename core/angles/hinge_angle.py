@@ -31,19 +31,9 @@ STEPS = 6
 
 
 def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray) -> FloatArray:
-    """Twist (n,) of the distal segment against the proximal one, radians, without jumps.
-
-    Parameters
-    ----------
-    j1, j2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-    unknowns : (12,)
-        Centres o1, o2 (m) and accelerometer biases b1, b2 (m/s2) as `joint_centre` found them.
-
-    Returns
-    -------
-    (n,)
-        rad.
+    """Give the twist (n,) of the distal against the proximal segment, rad, without jumps.
+    `j1`, `j2` (3,) are unit axes in each sensor's own axes; `unknowns` (12,) are centres o1, o2 (m) and
+    biases b1, b2 (m/s2) of `joint_centre`.
     """
     return hinge_angle_and_sd(pair, j1, j2, unknowns)[0]
 
@@ -51,20 +41,7 @@ def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray
 def hinge_angle_and_sd(
     pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """As `hinge_angle`, and how sure its drift is.
-
-    Parameters
-    ----------
-    j1, j2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-    unknowns : (12,)
-        Centres o1, o2 (m) and accelerometer biases b1, b2 (m/s2).
-
-    Returns
-    -------
-    (n,) and (n,)
-        rad; the standard deviation is zero where nothing is known.
-    """
+    """As `hinge_angle`, with the drift's standard deviation (n,), rad; zero where nothing is known."""
     from_rates = -angle_from_rates(pair.g1, pair.g2, j1, j2, pair.step_s)
     chosen = np.flatnonzero(pair.is_known)[:: max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))]
     if len(chosen) < 2:

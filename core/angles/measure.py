@@ -72,18 +72,7 @@ class Twist:
 
 
 def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
-    """All stretches of one block in which both sensors of a joint were received.
-
-    Parameters
-    ----------
-    lag_s
-        What is added to the distal sensor's stamps.
-
-    Returns
-    -------
-    list of Pair
-        In order of time, on the proximal sensor's clock.
-    """
+    """Pair one block's stretches in order of time on the proximal clock; `lag_s` is added to distal stamps."""
     key = (recording.name, joint, lag_s)
     if block.number or key not in tracks.pairs:
         proximal, distal = (tracks.oriented(recording, site, block) for site in (joint.proximal, joint.distal))
@@ -97,18 +86,7 @@ def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Bl
 
 
 def paired(proximal: list[OrientedTrack], distal: list[OrientedTrack], lag_s: float) -> list[Pair]:
-    """All stretches in which both sensors of a joint were received, the distal one's stamps moved by a lag.
-
-    Parameters
-    ----------
-    lag_s
-        What is added to the distal sensor's stamps.
-
-    Returns
-    -------
-    list of Pair
-        In order of time, on the proximal sensor's clock.
-    """
+    """Pair stretches in order of time on the proximal clock; `lag_s` is added to distal stamps."""
     pairs = [pair_up(one, two, lag_s) for one in proximal for two in distal]
     return [pair for pair in pairs if pair is not None]
 
@@ -121,20 +99,7 @@ def measure(
     time_s: FloatArray,
     clock_offset_s: float,
 ) -> Twist:
-    """Measure one joint at the stamps `time_s` (n,).
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Ascending stamps of the recording.
-    clock_offset_s
-        What brings the proximal sensor's clock to the clock of `time_s`.
-
-    Returns
-    -------
-    Twist
-        Angles in rad at `time_s`, NaN where unknown.
-    """
+    """Measure one joint at ascending stamps (n,); NaN: unknown. The offset leads from the proximal clock."""
     names = ("twist", "published", "orientation", "added_sd", *(("lean_1", "lean_2") if joint.is_knee else ()))
     angles = {name: np.full(len(time_s), np.nan) for name in names}
     witnesses: list[tuple[FloatArray, ...]] = []
@@ -201,17 +166,7 @@ def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block
 def place(
     into: FloatArray, values: FloatArray, pair: Pair, time_s: FloatArray, clock_offset_s: float, block: Block
 ) -> None:
-    """Write a pair's values at the stamps they belong to, where both sensors were received.
-
-    Parameters
-    ----------
-    into, time_s : (n,)
-        What is written into, and the stamps of the recording.
-    values : (m,)
-        At the samples of the pair.
-    clock_offset_s
-        What brings the proximal sensor's clock to that of `time_s`.
-    """
+    """Write a pair's values (m,) into `into` (n,) at the stamps (n,) where both sensors were received."""
     start_s = float(pair.time_s[0]) + clock_offset_s
     first = int(np.searchsorted(time_s, max(start_s - 0.25 * pair.step_s, block.core_from_s)))
     end_s = float(pair.time_s[-1]) + clock_offset_s
@@ -227,13 +182,7 @@ def place(
 
 
 def unwrap_over_gaps(angle_rad: FloatArray) -> None:
-    """Take jumps of whole turns out of an angle (n,) with gaps, in place.
-
-    Parameters
-    ----------
-    angle_rad : (n,)
-        NaN in gaps; changed in place.
-    """
+    """Remove jumps of whole turns from an angle (n,) with NaN gaps, in place."""
     received = np.flatnonzero(np.isfinite(angle_rad))
     if len(received):
         angle_rad[received] = np.unwrap(angle_rad[received])

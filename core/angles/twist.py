@@ -17,22 +17,9 @@ MIN_FILTERED = 10  # samples; the filter wants more than nine at either end
 
 
 def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: FloatArray) -> FloatArray:
-    """Rotation (n,) of the distal segment against the proximal one about the joint axis, radians, without jumps.
-
-    theta = arg(u - i v) with u = z(R12 x2), v = z(R12 y2) in the joint plane of sensor 1. Its sign and zero are those
-    of -alpha in Seel et al. 2014, eqs 10 to 14.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-    heading_rad : (n,)
-        Heading of the distal sensor's earth in the proximal one's.
-
-    Returns
-    -------
-    (n,)
-        rad, unwrapped.
+    """Give the rotation (n,) of distal against proximal segment about the joint axis (3,), rad, unwrapped.
+    theta = arg(u - i v), u = z(R12 x2), v = z(R12 y2) in sensor 1's joint plane; sign and zero of -alpha in
+    Seel et al. 2014, eqs 10 to 14. `heading_rad` (n,): distal earth in the proximal one's.
     """
     x1, y1 = _in_earth(pair.earth_from_1, axis_1)
     x2, y2 = (turn_about_vertical(heading_rad, v) for v in _in_earth(pair.earth_from_2, axis_2))
@@ -42,20 +29,7 @@ def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: Float
 
 
 def off_axis_rate(pair: Pair, axis_1: FloatArray, heading_rad: FloatArray) -> FloatArray:
-    """The two components (n, 2), rad/s, of the relative rate across the joint axis: what a hinge does not do.
-
-    Parameters
-    ----------
-    axis_1 : (3,)
-        Unit axis of the proximal sensor, in its axes.
-    heading_rad : (n,)
-        Heading of the distal sensor's earth in the proximal one's.
-
-    Returns
-    -------
-    (n, 2)
-        rad/s, in the proximal sensor's joint plane.
-    """
+    """Give the relative rate across the joint axis (n, 2), rad/s, in the proximal joint plane; 0 on a hinge."""
     rate_1 = np.einsum("nij,nj->ni", pair.earth_from_1, pair.g1)
     rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", pair.earth_from_2, pair.g2))
     relative = rate_2 - rate_1
@@ -73,20 +47,7 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
-    """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings.
-
-    All of it at low rates, and of a stretch too short to filter, as one of several walks may leave.
-
-    Parameters
-    ----------
-    off_axis : (n, 2)
-        rad/s, as `off_axis_rate` gives it.
-
-    Returns
-    -------
-    (n, 2)
-        rad/s.
-    """
+    """Give the part of an off-axis rate (n, 2) above 3 Hz; all of it at low sampling rates or short stretches."""
     if 1 / step_s < 4 * RINGING_HZ or len(off_axis) < MIN_FILTERED:
         return off_axis
     return np.asarray(sosfiltfilt(_above_ringing(step_s), off_axis, axis=0))

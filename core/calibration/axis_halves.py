@@ -71,10 +71,7 @@ class AxesOfParts:
 
 
 def axis_halves_in(parts: AxesOfParts, walk: Recording, gait: Mapping[Side, SideGait]) -> dict[Joint, AxisHalves]:
-    """How far apart the axes of two parts are, of the joints of one walk, and what that changes of its means.
-
-    Joints of which a part holds too little movement are missing.
-    """
+    """Compare the axes of two parts and what they change in a walk; joints with little movement are missing."""
     halves = {}
     for joint, found in parts.span.joints_in(walk).items():
         axes = parts.of(found)

@@ -22,13 +22,7 @@ Axes = tuple[FloatArray, FloatArray]
 
 
 def bare_axes(data: Datasets, axes: Axes) -> Axes | None:
-    """Axes (3,) in both sensors from a walk, starting with those found so far; None where tissue rings.
-
-    Parameters
-    ----------
-    data
-        All moving samples of the walk.
-    """
+    """Find both axes (3,) from a walk's moving samples, starting at `axes`; None where tissue rings."""
     if _ringing_rad_s(data, axes) > MAX_RINGING_RAD_S:
         return None
     some = data.thinned(SAMPLES)

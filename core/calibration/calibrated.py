@@ -93,13 +93,7 @@ def _is_clock_shared(session: Session, joint: Joint) -> bool:
 
 
 def standing_twist_of(tracks: SensorTracks, basis: Basis, geometry: Geometry) -> float | None:
-    """What a joint reads in its standing; None without one.
-
-    Returns
-    -------
-    float or None
-        rad, bare twist.
-    """
+    """Give a joint's uncalibrated twist in standing, rad; None without standing."""
     joint = basis.joint
     for recording in tracks.span:
         if recording.name == basis.standing:

@@ -32,21 +32,9 @@ MIN_DOUBTED_HINGE_RAD = np.deg2rad(0.9)
 
 
 def sandwich_covariance(slope: FloatArray, value: FloatArray, weight: FloatArray, block: IntArray) -> FloatArray:
-    """Covariance (p, p) of a robust fit whose residuals are correlated within blocks.
-
-    H^-1 (sum_b s_b s_b') H^-1 with s_b the sum of the score over block b.
-
-    Parameters
-    ----------
-    slope : (n, r, p)
-    value, weight : (n, r)
-    block : (n,)
-        Which block each sample belongs to.
-
-    Returns
-    -------
-    (p, p)
-        In the unknowns' units squared.
+    """Compute the covariance (p, p) of a robust fit whose residuals are correlated within blocks.
+    H^-1 (sum_b s_b s_b') H^-1 with s_b the sum of the score over block b; `slope` (n, r, p), `value`,
+    `weight` (n, r), `block` (n,).
     """
     weighted = slope * weight[..., None]
     information = np.tensordot(weighted, slope, axes=([0, 1], [0, 1]))
@@ -60,13 +48,7 @@ def sandwich_covariance(slope: FloatArray, value: FloatArray, weight: FloatArray
 
 
 def time_blocks(data: Datasets) -> IntArray:
-    """Number (n,) of the one-second block that each sample lies in, counted over all stretches.
-
-    Returns
-    -------
-    (n,)
-        Ascending within each stretch.
-    """
+    """Number the one-second block of each sample, (n,), counted over all stretches."""
     block = np.zeros(len(data), dtype=np.int64)
     first = 0
     for s in range(len(data.pairs)):
@@ -79,41 +61,13 @@ def time_blocks(data: Datasets) -> IntArray:
 
 
 def axis_sd_rad(covariance: FloatArray, floor_rad: float) -> float:
-    """The larger of both axes' standard deviations along their weakest direction, with the floor.
-
-    Parameters
-    ----------
-    covariance : (4, 4)
-        Of the tangent coordinates of both axes.
-    floor_rad
-        What no fit on such a joint is better than.
-
-    Returns
-    -------
-    float
-        rad.
-    """
+    """Give the larger axis sd along its weakest direction, rad, with the floor; covariance (4, 4) of tangents."""
     worst = max(float(np.linalg.eigvalsh(covariance[part, part])[-1]) for part in (slice(0, 2), slice(2, 4)))
     return float(np.sqrt(max(worst, 0.0) + floor_rad**2))
 
 
 def looseness(data: Datasets, axis_1: FloatArray, heading_rad: FloatArray) -> float:
-    """Rate across the axis over the rate along it, root mean squares: 0 a true hinge, 1 no axis at all.
-
-    A mechanical hinge has 0.015, a person's knee that passes for one 0.02 to 0.06, and its axis is off by as much.
-
-    Parameters
-    ----------
-    axis_1 : (3,)
-        Unit axis of the proximal sensor, in its axes.
-    heading_rad : (n,)
-        Of the distal earth in the proximal one.
-
-    Returns
-    -------
-    float
-        A ratio without unit.
-    """
+    """Give RMS rate across over along the axis: 0 true hinge (mechanical 0.015, knee to 0.06), 1 no axis."""
     rate_1 = np.einsum("nij,nj->ni", data.earth_from_1, data.g1)
     rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", data.earth_from_2, data.g2))
     relative = rate_2 - rate_1
@@ -123,18 +77,7 @@ def looseness(data: Datasets, axis_1: FloatArray, heading_rad: FloatArray) -> fl
 
 
 def hinge_floor_rad(loose: float) -> float:
-    """Least standard deviation of a hinge's axis.
-
-    Parameters
-    ----------
-    loose
-        As `looseness` gives it.
-
-    Returns
-    -------
-    float
-        rad.
-    """
+    """Give the least standard deviation of a hinge's axis, rad, from its `looseness`."""
     return float(np.hypot(AXIS_FLOOR_HINGE_RAD, loose))
 
 
@@ -147,25 +90,8 @@ def angle_sd_rad(
     is_prosthetic: bool = False,
     ringing_rad_s: float | None = None,
 ) -> FloatArray:
-    """Standard deviation (n,) of a joint's angle in one recording.
-
-    Parameters
-    ----------
-    distance_rad : (n,)
-        Of the angle from the middle posture.
-    off_axis_rate_rad_s
-        Its spread per axis in that recording, while the segments turn.
-    range_rad
-        Of the angle; counts on a hinge only.
-    is_prosthetic
-        Declared to be on the side of a prosthesis.
-    ringing_rad_s
-        The part of the off-axis rate above 3 Hz, root mean square; None where not known.
-
-    Returns
-    -------
-    (n,)
-        rad.
+    """Give the standard deviation (n,) of a joint's angle, rad; `distance_rad` (n,) from the middle posture.
+    `range_rad` counts on hinges only; `ringing_rad_s`: RMS off-axis rate above 3 Hz, None: unknown.
     """
     rate = off_axis_rate_rad_s
     if is_knee:

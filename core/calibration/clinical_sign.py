@@ -32,54 +32,19 @@ class ClinicalSign:
 
 
 def skewness(values: FloatArray, share: float) -> float:
-    """(p_hi + p_lo)/(p_hi - p_lo) of the quantiles `share` and 1 - share: 1 all positive, 0 symmetric.
-
-    Parameters
-    ----------
-    values : (n,)
-        In any unit.
-    share
-        Of the lower quantile, 0 to 0.5.
-
-    Returns
-    -------
-    float
-        Within -1 and 1 where the quantiles lie on both sides of zero; 0 where they are equal.
-    """
+    """Compute (p_hi + p_lo)/(p_hi - p_lo) of quantiles `share`, 1 - share: 1 all positive, 0 symmetric."""
     low, high = np.quantile(values, [share, 1 - share])
     return float((high + low) / (high - low)) if high > low else 0.0
 
 
 def range_of(theta_rad: FloatArray) -> float:
-    """Range of an angle between its 2nd and 98th percentile.
-
-    Parameters
-    ----------
-    theta_rad : (n,)
-        Without NaN.
-
-    Returns
-    -------
-    float
-        rad.
-    """
+    """Give the range between the 2nd and 98th percentile of an angle (n,) without NaN."""
     low, high = np.quantile(theta_rad, [0.02, 0.98])
     return float(high - low)
 
 
 def forward_swing(rate_rad_s: FloatArray) -> float:
-    """How much faster the shank turns one way than the other, -1 to 1; 0 for a shank that hardly swings.
-
-    Parameters
-    ----------
-    rate_rad_s : (m,)
-        Of the shank about its joint axis while moving.
-
-    Returns
-    -------
-    float
-        A ratio without unit.
-    """
+    """Give how much faster the shank turns one way, -1 to 1, 0 where it hardly swings; rate (m,) while moving."""
     low, high = np.quantile(rate_rad_s, [0.005, 0.995])
     if high - low < 2 * MIN_SWING_RAD_S:
         return 0.0
@@ -89,23 +54,8 @@ def forward_swing(rate_rad_s: FloatArray) -> float:
 def knee_sign(
     theta_rad: FloatArray, shank_rate_rad_s: FloatArray, is_walking: bool, has_standing: bool
 ) -> ClinicalSign:
-    """Sign of knee flexion.
-
-    Parameters
-    ----------
-    theta_rad : (n,)
-        Twist while moving, minus its value in standing (without standing: minus its median).
-    shank_rate_rad_s : (m,)
-        -g2.j2 while moving.
-    is_walking
-        Otherwise the shank's swing gives nothing.
-    has_standing
-        Without it, and without walking, nothing does.
-
-    Returns
-    -------
-    ClinicalSign
-        1 or -1, by which the twist becomes flexion, and how surely.
+    """Find the sign of knee flexion; `theta_rad` (n,) is the moving twist less its standing value or median.
+    `shank_rate_rad_s` (m,) is -g2.j2 while moving; without walking and standing nothing is certain.
     """
     bend = skewness(theta_rad, 0.02) if range_of(theta_rad) > MIN_RANGE_RAD else 0.0
     swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
@@ -118,22 +68,8 @@ def knee_sign(
 def ankle_sign(
     knee: ClinicalSign | None, alignment: float, shank_rate_rad_s: FloatArray, is_walking: bool
 ) -> ClinicalSign:
-    """Sign of ankle dorsiflexion: opposite to the knee's, else by the shank's own swing.
-
-    A knee that does not know its own sign (stiff or locked) is no witness; the shank swings all the same. Where a
-    knee's bending contradicts that swing, the swing is none either.
-
-    Parameters
-    ----------
-    alignment
-        j2,knee . j1,ankle, both in the shank's sensor; 0 without knee.
-    shank_rate_rad_s : (m,)
-        -g1.j1,ankle while moving.
-
-    Returns
-    -------
-    ClinicalSign
-        1 or -1, by which the twist becomes dorsiflexion, and how surely.
+    """Find the sign of ankle dorsiflexion: opposite to the knee's, else by the shank's undisputed swing.
+    `alignment` is j2,knee . j1,ankle in the shank's sensor, 0 without knee; the rate (m,) is -g1.j1,ankle.
     """
     swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
     if knee is None or not knee.is_certain:
@@ -147,19 +83,6 @@ def ankle_sign(
 
 
 def ankle_sign_from_foot(pitch_alignment: float, swings: int) -> ClinicalSign:
-    """Sign of ankle dorsiflexion from the foot's own way: dorsiflexion lifts the toes, and a foot travels toes first.
-
-    Parameters
-    ----------
-    pitch_alignment
-        j2,ankle . the foot's pitch axis, toes up positive, both in the foot's sensor.
-    swings
-        How many showed where the toes are.
-
-    Returns
-    -------
-    ClinicalSign
-        1 or -1, by which the twist becomes dorsiflexion, and how surely.
-    """
+    """Find the ankle's sign from the foot; `pitch_alignment`: j2,ankle . pitch axis, toes up positive."""
     is_certain = swings >= MIN_SWINGS and abs(pitch_alignment) >= MIN_AXES_ALIGNMENT
     return ClinicalSign(1 if pitch_alignment >= 0 else -1, abs(pitch_alignment), is_certain)

@@ -31,18 +31,7 @@ class Coincidence:
 
 
 def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:
-    """R12 (c, n, 3, 3), turning vectors of sensor 2 into sensor 1, for headings (c, n).
-
-    Parameters
-    ----------
-    heading : (c, n)
-        rad, of the distal earth in the proximal one, for each of c candidates.
-
-    Returns
-    -------
-    (c, n, 3, 3)
-        Takes vectors in the distal sensor's axes to the proximal one's.
-    """
+    """Give R12 (c, n, 3, 3), from distal to proximal sensor axes, for headings (c, n) of the distal earth."""
     c, s = np.cos(heading), np.sin(heading)
     turn = np.zeros((*heading.shape, 3, 3))
     turn[..., 0, 0] = turn[..., 1, 1] = c
@@ -51,36 +40,12 @@ def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:
 
 
 def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float = SCALE_M_S2) -> Coincidence:
-    """Robust linear least squares for centres and biases under rotations (c, n, 3, 3).
-
-    Parameters
-    ----------
-    rotation_12 : (c, n, 3, 3)
-        As `relative_rotation` gives it.
-    scale_m_s2
-        Residuals beyond this count less and less.
-
-    Returns
-    -------
-    Coincidence
-        One solution per candidate.
-    """
+    """Fit centres and biases per candidate rotation (c, n, 3, 3) by robust linear least squares."""
     return solve_robustly(coincidence_design(data, rotation_12), scale_m_s2)
 
 
 def coincidence_design(data: Datasets, rotation_12: FloatArray) -> FloatArray:
-    """What `solve_robustly` takes (c, 13, 3, n), of accelerations as they are, under rotations (c, n, 3, 3).
-
-    Parameters
-    ----------
-    rotation_12 : (c, n, 3, 3)
-        As `relative_rotation` gives it.
-
-    Returns
-    -------
-    (c, 13, 3, n)
-        Slopes by o1, o2, b1, b2 (12), then what they have to give, m/s2, in the proximal sensor's axes.
-    """
+    """Build the design (c, 13, 3, n) for `solve_robustly`: slopes by o1, o2, b1, b2, then targets, m/s2."""
     c, n = rotation_12.shape[:2]
     design = np.empty((c, 13, 3, n))
     rows = np.moveaxis(design, (3, 2, 1), (1, 2, 3))  # the same, sample by sample
@@ -108,18 +73,7 @@ class JointForces:
 
 
 def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
-    """The forces at the samples of `data`; at all of them where hardly any is clear of gaps.
-
-    Parameters
-    ----------
-    room_s
-        How much earlier and later the distal sensor has to be received as well.
-
-    Returns
-    -------
-    JointForces
-        Terms of both sensors, each in its own earth axes.
-    """
+    """Give forces at samples clear of gaps, else at all; `room_s`: margin of distal samples before and after."""
     is_clear = np.zeros(len(data), dtype=bool)
     for s, pair in enumerate(data.pairs):
         mine = data.stretch == s
@@ -139,20 +93,7 @@ def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
 
 
 def distal_terms(data: Datasets, chosen: IntArray, shifts_s: FloatArray) -> FloatArray:
-    """Terms (c, 7, 3, n) of the distal sensor, its stamps moved by each of `shifts_s` (c,) more.
-
-    Parameters
-    ----------
-    chosen : (n,)
-        Numbers of samples of `data`.
-    shifts_s : (c,)
-        Added to the distal stamps.
-
-    Returns
-    -------
-    (c, 7, 3, n)
-        In the distal sensor's earth axes; see `JointForce`.
-    """
+    """Give the distal sensor's terms (c, 7, 3, n) in its earth axes, stamps moved by `shifts_s` (c,)."""
     terms = np.empty((len(shifts_s), 7, 3, len(chosen)))
     for s, pair in enumerate(data.pairs):
         mine = data.stretch[chosen] == s
@@ -163,36 +104,12 @@ def distal_terms(data: Datasets, chosen: IntArray, shifts_s: FloatArray) -> Floa
 
 
 def fit_forces(forces: JointForces, heading: FloatArray) -> Coincidence:
-    """As `fit_coincidence`, of low-passed forces under headings (c, n) at their samples.
-
-    Parameters
-    ----------
-    heading : (c, n)
-        rad, of the distal earth in the proximal one.
-
-    Returns
-    -------
-    Coincidence
-        One solution per candidate.
-    """
+    """Fit as `fit_coincidence`, but low-passed forces under headings (c, n), rad, at their samples."""
     return solve_robustly(force_design(forces.terms_1, forces.terms_2, heading), SCALE_M_S2)
 
 
 def force_design(terms_1: FloatArray, terms_2: FloatArray, heading: FloatArray) -> FloatArray:
-    """What `solve_robustly` takes (c, 13, 3, n), of terms (7, 3, n) or (c, 7, 3, n) under headings (c, n).
-
-    Parameters
-    ----------
-    terms_1, terms_2 : (7, 3, n) or (c, 7, 3, n)
-        Of the proximal and the distal sensor, each in its own earth axes.
-    heading : (c, n)
-        rad, of the distal earth in the proximal one.
-
-    Returns
-    -------
-    (c, 13, 3, n)
-        As `coincidence_design`, in the proximal sensor's earth axes.
-    """
+    """Build the design (c, 13, 3, n) from terms (7, 3, n) or (c, 7, 3, n) and headings (c, n), rad."""
     turned = turned_about_vertical(heading, terms_2)
     design = np.empty((len(turned), 13, *turned.shape[2:]))
     design[:, 0:3], design[:, 6:9] = terms_1[0:3], terms_1[3:6]
@@ -203,20 +120,7 @@ def force_design(terms_1: FloatArray, terms_2: FloatArray, heading: FloatArray) 
 
 
 def turned_about_vertical(heading: FloatArray, terms: FloatArray) -> FloatArray:
-    """Rz(heading) terms, (c, t, 3, n) for headings (c, n) and terms (t, 3, n) or (c, t, 3, n).
-
-    Parameters
-    ----------
-    heading : (c, n)
-        rad.
-    terms : (t, 3, n) or (c, t, 3, n)
-        Vectors in earth axes, z up.
-
-    Returns
-    -------
-    (c, t, 3, n)
-        The same turned.
-    """
+    """Compute Rz(heading) terms, (c, t, 3, n), for headings (c, n), rad, and terms ([c,] t, 3, n), z up."""
     c, s = np.cos(heading)[:, None], np.sin(heading)[:, None]
     turned = np.empty((*np.broadcast_shapes(terms.shape[:-2], (len(heading), 1)), 3, heading.shape[1]))
     turned[..., 0, :] = c * terms[..., 0, :] - s * terms[..., 1, :]
@@ -226,48 +130,22 @@ def turned_about_vertical(heading: FloatArray, terms: FloatArray) -> FloatArray:
 
 
 def disagreement(forces: JointForces, heading: FloatArray, unknowns: FloatArray) -> float:
-    """What the best coincidence leaves, against all that both sensors feel beside gravity: 0 one joint, 1 none.
-
-    Parameters
-    ----------
-    heading : (n,)
-    unknowns : (12,)
-
-    Returns
-    -------
-    float
-        A ratio without unit.
-    """
+    """Give the best coincidence's residual by all force beside gravity: 0 one joint, 1 none; heading (n,)."""
     turned = turned_about_vertical(heading[None], forces.terms_2)[0]
     one = forces.terms_1[6] - np.tensordot(unknowns[[0, 1, 2, 6, 7, 8]], forces.terms_1[:6], 1)
     two = turned[6] - np.tensordot(unknowns[[3, 4, 5, 9, 10, 11]], turned[:6], 1)
     gravity = np.array([[0.0], [0.0], [GRAVITY_M_S2]])
-    felt = sum(_loss(terms[6] - gravity) for terms in (forces.terms_1, forces.terms_2))
-    return _loss(one - two) / max(felt, 1e-12)
+    felt = sum(mean_cost(terms[6] - gravity) for terms in (forces.terms_1, forces.terms_2))
+    return mean_cost(one - two) / max(felt, 1e-12)
 
 
-def _loss(error: FloatArray) -> float:
+def mean_cost(error: FloatArray) -> float:
     """Mean robust loss of vectors (3, n)."""
     return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=0) / SCALE_M_S2**2) - 1))
 
 
 def solve_robustly(design: FloatArray, scale_m_s2: float) -> Coincidence:
-    """Unknowns of each candidate, from design (c, 13, 3, n): the slopes by the unknowns, and what they have to give.
-
-    Samples come last, for along so long an axis arrays are several times as fast.
-
-    Parameters
-    ----------
-    design : (c, 13, 3, n)
-        As `coincidence_design` gives it.
-    scale_m_s2
-        Residuals beyond this count less and less.
-
-    Returns
-    -------
-    Coincidence
-        One solution per candidate.
-    """
+    """Solve each candidate's design (c, 13, 3, n) robustly; samples come last, which is several times as fast."""
     c, n = len(design), design.shape[3]
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6) * scale_m_s2**2
     flat, root = design.reshape(c, 13, 3 * n), np.ones((c, n))

@@ -50,10 +50,7 @@ Turn = Turning | None
 
 
 def reversed_sites(turns: Mapping[Site, Turn]) -> list[tuple[Site, ...]]:
-    """The sites whose sensors turn against adjacent segments, each alone or, where it is one of two, with the other.
-
-    `turns` are those about the vertical in one recording.
-    """
+    """Find sites whose sensors turn about the vertical against adjacent segments, alone or one of two."""
     found: list[tuple[Site, ...]] = []
     for side in Side:
         knee, ankle = (_agreement(turns, joint) for joint in (Joint(f"{side}_knee"), Joint(f"{side}_ankle")))

@@ -33,20 +33,7 @@ FORCE_CORRELATION_S = 0.1
 
 
 def heading_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, unknowns: FloatArray) -> FloatArray:
-    """Heading (n,) of the distal earth in the proximal one at every sample of a pair.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-    unknowns : (12,)
-        Centres o1, o2 (m) and accelerometer biases b1, b2 (m/s2).
-
-    Returns
-    -------
-    (n,)
-        rad.
-    """
+    """Give the heading (n,) of the distal earth in the proximal one, rad; `unknowns` (12,) in m and m/s2."""
     data = _spread(pair, pair.is_known)
     if len(data) < 10:
         data = _spread(pair, np.ones(len(pair), dtype=bool))
@@ -125,13 +112,7 @@ def _force_terms(data: Datasets, forces: Forces, heading: FloatArray) -> tuple[F
 
 
 def residual_scales(data: Datasets, fit: Candidates) -> tuple[float, float]:
-    """Robust spreads of the off-axis rate (rad/s) and of the parting of the axes (rad) under the first candidate.
-
-    Returns
-    -------
-    float, float
-        rad/s and rad.
-    """
+    """Give robust spreads of the off-axis rate, rad/s, and of the axes' parting, rad, for candidate 0."""
     r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), RATE_SCALE_RAD_S, NEUTRAL_SCALE_RAD)
     rate = robust_sd(r.value[0, :, :4]) * np.sqrt(2) * RATE_SCALE_RAD_S
     neutral = robust_sd(r.value[0, :, 4:]) * NEUTRAL_SCALE_RAD

@@ -34,18 +34,7 @@ def turning(data: Datasets, count: int) -> Datasets:
 
 
 def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
-    """|g1 x j1| - |g2 x j2| (n,), rad/s: zero on a hinge (eq 3).
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-
-    Returns
-    -------
-    (n,)
-        rad/s. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 3.
-    """
+    """Compute |g1 x j1| - |g2 x j2| (n,), 0 on a hinge (Seel et al. 2014, doi 10.3390/s140406891, eq 3)."""
     return _in_plane_length(data.g1, axis_1) - _in_plane_length(data.g2, axis_2)
 
 
@@ -56,39 +45,16 @@ def _in_plane_length(rate: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 def hinge_residual(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
-    """Spread of `in_plane_difference`, which decides whether a joint is a hinge.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-
-    Returns
-    -------
-    float
-        rad/s.
-    """
+    """Give the spread of `in_plane_difference`, rad/s, by which a joint is called a hinge."""
     return robust_sd(in_plane_difference(data, axis_1, axis_2))
 
 
 def hinge_axes(
     data: Datasets, axis_1: FloatArray, axis_2: FloatArray, unknowns: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Axes (3,) in both sensors by eq 6 and by equal acceleration along the axis; None where it leads elsewhere.
-
-    The accelerometers' biases along the axis, what `unknowns` has not found of them, are estimated beside.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes to start from, each in its own sensor's axes.
-    unknowns : (12,)
-        Centres and accelerometer biases as `coincidence` found them.
-
-    Returns
-    -------
-    Both axes, and the slopes (n, 2, 4) of the two residuals per sample by the four tangent coordinates, each already
-    divided by its scale, with the residuals in column 4: (n, 2, 5).
+    """Fit both axes (3,) by eq 6 and equal acceleration along the axis; None where they move too far.
+    Also gives (n, 2, 5): slopes of both residuals by the four tangent coordinates and, last, the residuals,
+    all scaled.
     """
     shifted_1 = data.a1 - unknowns[6:9] - lever_acceleration(data.g1, data.dg1, unknowns[0:3])
     shifted_2 = data.a2 - unknowns[9:12] - lever_acceleration(data.g2, data.dg2, unknowns[3:6])

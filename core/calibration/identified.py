@@ -176,20 +176,7 @@ def _walked_axes(tracks: SensorTracks, basis: Basis, found: Identification, knee
 def walked_axes(
     axes: Axes, basis: Basis, walked: Datasets | None, knee: Identified | None, downs: Downs | None
 ) -> WalkedAxes:
-    """The axes of a person's ankle, where flexion dominates, as its walks correct them.
-
-    Without tissue they are those of the bare rates. One that is known from walking alone, whose knee and whose standing
-    are known, leans on its knee; a free motion shows an ankle's own axis better than its knee does.
-
-    Parameters
-    ----------
-    axes
-        Unit axes (3,) found so far.
-    walked
-        Moving samples of the walks; None where there are none.
-    downs
-        Specific forces (3,) of both sensors in standing.
-    """
+    """Correct an ankle's axes by its walks: bare rates without tissue, else by the knee if no free motion."""
     bare = bare_axes(walked, axes) if walked is not None else None
     if bare is not None:
         return WalkedAxes(bare, is_bare=True)
@@ -234,15 +221,7 @@ def _as_published(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identifie
 
 
 def clock_moved_s(tracks: SensorTracks, recording: Recording, found: Identified) -> float:
-    """How far the distal clock of one recording is from where the identification found it, 0 where it is not.
-
-    One lag holds for all recordings of a joint; one whose own accelerations ask for another is worth telling.
-
-    Returns
-    -------
-    float
-        s.
-    """
+    """Give how far one recording's distal clock is from the identified lag, s; 0 where not significant."""
     geometry, joint = found.geometry, found.basis.joint
     pairs = pairs_of(tracks, recording, joint, tracks.blocks(recording)[0], geometry.lag_s)
     data = moving_data(tuple(pairs))

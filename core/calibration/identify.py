@@ -99,18 +99,7 @@ def identify_joint(
     is_from_walking: bool,
     downs: Downs | None,
 ) -> Identification | None:
-    """Identify one joint; None where the recordings hold too little movement.
-
-    Parameters
-    ----------
-    others_at
-        Pairs that do not identify the axis but must agree when it is called a hinge.
-    free_at
-        Those of `pairs_at` that are of a free motion. It shows a human joint's centre better than together with walks,
-        whose tissue moves in step with the steps. None where they are all of `pairs_at`.
-    downs
-        Specific forces (3,) of both sensors in standing.
-    """
+    """Identify one joint, None for too little movement; `others_at` confirm a hinge, `free_at` None: all free."""
     data = moving_data(pairs_at(0.0))
     if data is None:
         return None
@@ -138,13 +127,9 @@ class Decision:
 
 
 def decide(data: Datasets, downs: Downs | None = None) -> Decision:
-    """The best hypothesis about axes and heading, and how much better it is than its best rival.
-
-    Where the axis is steep in standing, something else than flexion dominated; of the hypotheses with the same
-    heading the one that lies flatter is then taken, which is a better guess and is reported.
-
-    Rates propose, accelerations decide: in straight walking a heading half a turn away is almost as good by rates
-    alone.
+    """Choose axes and heading by rates and accelerations, with the margin over the best rival.
+    Where the axis is steep in standing, the flattest with the same heading is taken: something else than
+    flexion dominated.
     """
     few = data.thinned(CANDIDATE_SAMPLES)
     found = joined([candidates(data, few, s) for s in _richest_stretches(data)])
@@ -282,18 +267,7 @@ def _hinge_residual(turned: list[Datasets], axis_1: FloatArray, axis_2: FloatArr
 
 
 def disagreement_about(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
-    """What the sensors of a joint feel of it differently, against all that they feel.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-
-    Returns
-    -------
-    float
-        0 one joint, 1 none.
-    """
+    """Give the disagreement of two sensors' forces under axes (3,): 0 one joint, 1 none."""
     some = data.thinned(DECISION_SAMPLES)
     knots = heading_from_axes(some, axis_1[None], axis_2[None])
     forces = joint_forces(some)
@@ -302,18 +276,7 @@ def disagreement_about(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -
 
 
 def axis_covariance(data: Datasets, fit: Candidates, scales: tuple[float, float]) -> FloatArray:
-    """Formal covariance (4, 4) of both axes' tangent coordinates under the first candidate, rad^2.
-
-    Parameters
-    ----------
-    scales
-        Of the off-axis rate, rad/s, and of the parting of the axes, rad.
-
-    Returns
-    -------
-    (4, 4)
-        What the fit's own residuals make of it, without a floor.
-    """
+    """Give the formal covariance (4, 4) of both axes' tangents for candidate 0, rad2, without a floor."""
     r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), *scales)
     _, weight = loss_and_weights(r.value)
     # the heading is a nuisance: one slope per sample is taken out of the axes' slopes

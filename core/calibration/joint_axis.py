@@ -49,16 +49,9 @@ def joined(many: list[Candidates]) -> Candidates:
 
 
 def candidates(data: Datasets, few: Datasets, stretch: int) -> Candidates:
-    """Axes and headings under which little of the relative rate is off axis, and their mirror pairings.
-
-    The relative rate is w(d) = cos d A + sin d B + C, so six 3x3 moments give its scatter at every heading d. At each
-    of the best minima the axes are the principal directions; the opposite pairing of the two axes is a candidate as
-    well.
-
-    Parameters
-    ----------
-    few
-        Some of the same samples, enough to give the headings of all stretches from the axes.
+    """Find axes and headings with little off-axis rate in one stretch, and their mirror pairings.
+    The relative rate is w(d) = cos d A + sin d B + C, so six 3x3 moments give its scatter at all headings
+    d; axes are its principal directions. `few` gives the headings of all stretches.
     """
     axes_1, axes_2 = _scan(data, stretch)
     pairs_1, pairs_2 = np.concatenate([axes_1, axes_1]), np.concatenate([axes_2, -axes_2])
@@ -117,18 +110,7 @@ def _scatter(sensor_from: FloatArray, turned: FloatArray, fixed: FloatArray, hea
 
 
 def heading_from_axes(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
-    """Heading knots (c, k) under which the axes (c, 3) of both sensors point the same way, in closed form.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (c, 3)
-        Unit axes of each candidate, each in its own sensor's axes.
-
-    Returns
-    -------
-    (c, k)
-        rad, at the heading knots of `data`.
-    """
+    """Give heading knots (c, k), rad, under which both axes (c, 3) point the same way, in closed form."""
     e1 = np.einsum("nij,cj->cni", data.earth_from_1, axis_1)
     e2 = np.einsum("nij,cj->cni", data.earth_from_2, axis_2)
     product = (e1[..., 0] + 1j * e1[..., 1]) * (e2[..., 0] - 1j * e2[..., 1])
@@ -149,13 +131,7 @@ def _stretch_knots(data: Datasets) -> list[tuple[int, int]]:
 
 
 def knot_weights(data: Datasets) -> FloatArray:
-    """Share (n, k) that each knot has in the heading of each sample.
-
-    Returns
-    -------
-    (n, k)
-        Rows sum to 1.
-    """
+    """Give the share (n, k) of each heading knot in each sample; rows sum to 1."""
     weights = np.zeros((len(data), data.knots))
     row = np.arange(len(data))
     weights[row, data.knot_left] = 1 - data.knot_share
@@ -221,24 +197,7 @@ def residuals(
     neutral_scale: float,
     known: InEarth | None = None,
 ) -> Residuals:
-    """Residuals at axes (c, 3) and headings (c, n).
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (c, 3)
-        Unit axes of each candidate, each in its own sensor's axes.
-    heading : (c, n)
-        rad, of the distal earth in the proximal one.
-    rate_scale, neutral_scale
-        Scales of the off-axis rate, rad/s, and of the parting of the axes, rad.
-    known
-        Of `data`, where it is at hand.
-
-    Returns
-    -------
-    Residuals
-        Without unit, each over its scale.
-    """
+    """Compute residuals at axes (c, 3) and headings (c, n), rad; scales in rad/s and rad."""
     earth = known or in_earth(data)
     axes = np.stack([axis_1, axis_2])
     x, y = joint_frame(axes)
@@ -281,18 +240,7 @@ def _turned(cosine: FloatArray, sine: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def loss_and_weights(value: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Robust loss 2 (sqrt(1 + r^2) - 1) per sample (c, n), and the weight (c, n, 7) each residual has in it.
-
-    Parameters
-    ----------
-    value : (c, n, 7)
-        Residuals over their scales.
-
-    Returns
-    -------
-    (c, n) and (c, n, 7)
-        Loss, and weights 0 to 1, without unit.
-    """
+    """Compute robust loss 2 (sqrt(1 + r^2) - 1) per sample (c, n) and weights (c, n, 7) of `value` (c, n, 7)."""
     roots = _roots(value)
     weights = np.empty_like(value)
     for group, root in zip(GROUPS, roots, strict=True):
@@ -318,22 +266,7 @@ def polish(
     neutral_scale: float = NEUTRAL_SCALE_RAD,
     is_axis_fixed: bool = False,
 ) -> Candidates:
-    """Gauss-Newton on axes and heading knots of every candidate at once.
-
-    Parameters
-    ----------
-    start
-        Where the steps begin.
-    rate_scale, neutral_scale
-        Scales of the off-axis rate, rad/s, and of the parting of the axes, rad.
-    is_axis_fixed
-        Only the heading knots move.
-
-    Returns
-    -------
-    Candidates
-        In the order of `start`.
-    """
+    """Refine axes and heading knots of all candidates by Gauss-Newton; `is_axis_fixed`: knots only."""
     axis_1, axis_2, knots = start.axis_1, start.axis_2, start.knots_rad
     shares, information, prior = knot_weights(data), sample_information(data), heading_prior(data)
     known = in_earth(data)
@@ -387,13 +320,7 @@ def _step(
 
 
 def sample_information(data: Datasets) -> float:
-    """What one sample adds, where the samples beside it within the correlation time show the same.
-
-    Returns
-    -------
-    float
-        0 to 1, without unit.
-    """
+    """Give what one sample adds, 0 to 1, as samples within the correlation time show the same."""
     if len(data) < 2:
         return 1.0
     same = data.stretch[1:] == data.stretch[:-1]
@@ -402,13 +329,7 @@ def sample_information(data: Datasets) -> float:
 
 
 def heading_prior(data: Datasets) -> FloatArray:
-    """Information matrix (k, k) of the headings' random walk between adjacent knots.
-
-    Returns
-    -------
-    (k, k)
-        1/rad2.
-    """
+    """Give the information matrix (k, k) of the headings' random walk between adjacent knots, 1/rad2."""
     prior = np.zeros((data.knots, data.knots))
     for k, spacing_s in enumerate(data.knot_spacing_s):
         if np.isfinite(spacing_s):
@@ -418,20 +339,7 @@ def heading_prior(data: Datasets) -> FloatArray:
 
 
 def moved(axis: FloatArray, tangent: FloatArray) -> FloatArray:
-    """Axes (..., 3) moved along their own tangent coordinates (..., 2) and back to unit length.
-
-    Parameters
-    ----------
-    axis : (..., 3)
-        Unit vectors.
-    tangent : (..., 2)
-        rad, along the two axes of `joint_frame`.
-
-    Returns
-    -------
-    (..., 3)
-        Unit vectors.
-    """
+    """Move unit axes (..., 3) along their tangents (..., 2), rad in `joint_frame`, and renormalise them."""
     x, y = joint_frame(axis)
     there = axis + tangent[..., :1] * x + tangent[..., 1:] * y
     moved_there: FloatArray = there / np.linalg.norm(there, axis=-1, keepdims=True)

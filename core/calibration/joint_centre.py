@@ -54,18 +54,7 @@ class JointCentre:
 
 
 def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
-    """The vector form of eq 7 under known relative orientation: best on a hinge.
-
-    Parameters
-    ----------
-    knots_rad : (k,)
-        Relative heading at the knots of `data`.
-
-    Returns
-    -------
-    JointCentre
-        In sensor axes. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 7.
-    """
+    """Find the centre by eq 7's vector form (Seel et al. 2014, doi 10.3390/s140406891); knots (k,), rad."""
     design = coincidence_design(data, relative_rotation(data, data.heading(knots_rad)[None]))
     first = solve_robustly(design, SCALE_M_S2).unknowns[0]
     left = design[0, 12] - np.tensordot(first, design[0, :12], 1)
@@ -74,18 +63,7 @@ def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
 
 
 def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
-    """Eq 8 (Seel et al. 2014) with an accelerometer bias per sensor and a robust loss: needs no orientation.
-
-    Parameters
-    ----------
-    start : (12,)
-        From `centre_by_vectors`.
-
-    Returns
-    -------
-    JointCentre
-        In sensor axes. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 8.
-    """
+    """Find the centre by eq 8 (Seel et al. 2014, doi 10.3390/s140406891) with biases, robustly; `start` (12,)."""
     g1, dg1, a1 = (np.ascontiguousarray(v.T) for v in (data.g1, data.dg1, data.a1))
     g2, dg2, a2 = (np.ascontiguousarray(v.T) for v in (data.g2, data.dg2, data.a2))
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6)
@@ -132,20 +110,7 @@ def centre_sd_m(
     is_knee: bool,
     looseness: float = 0.0,
 ) -> float:
-    """Standard deviation along the weakest observable direction; a knee or a hinge shows nothing along its axis.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-    looseness
-        Of a hinge: what turns across its axis moves its sensors by that share of their lever.
-
-    Returns
-    -------
-    float
-        m, the larger of both sensors'.
-    """
+    """Give the centre's larger sd, m, in the weakest observable direction (knee, hinge: across the axis)."""
     worst = 0.0
     for axis, part in ((axis_1, slice(0, 3)), (axis_2, slice(3, 6))):
         covariance = centre.covariance[part, part]
@@ -159,17 +124,6 @@ def centre_sd_m(
 
 
 def nearest_to_sensors(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Of all points on the axis the one nearest to both sensors (Seel et al. 2014, eq 9).
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-
-    Returns
-    -------
-    (3,) and (3,)
-        Vectors from that point to each sensor, m, in its axes.
-    """
+    """Give vectors (3,), m, from the axis point nearest to both sensors to each (Seel et al. 2014, eq 9)."""
     along = 0.5 * float(centre.proximal_m @ axis_1 + centre.distal_m @ axis_2)
     return centre.proximal_m - axis_1 * along, centre.distal_m - axis_2 * along

@@ -14,17 +14,7 @@ Axes = tuple[FloatArray, FloatArray]
 
 
 def helped_by_knee(axes: Axes, knee_axis: FloatArray, downs: Axes) -> Axes | None:
-    """The axes (3,) of an ankle moved towards its knee's; None where these are not of one direction.
-
-    Parameters
-    ----------
-    axes
-        Of the ankle, in the shank's and in the foot's sensor.
-    knee_axis : (3,)
-        Of the knee, in the shank's sensor.
-    downs
-        Specific forces (3,) of shank and foot in standing, by which the new axis is carried from one to the other.
-    """
+    """Move an ankle's axes (3,) towards its knee's (shank's sensor); None where they are not of one direction."""
     one, two = axes
     along = float(one @ knee_axis)
     if abs(along) < MIN_ALIGNMENT:

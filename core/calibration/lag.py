@@ -52,20 +52,7 @@ NO_LAG = Lag(0.0, 0.0, None, 1.0, False)
 
 
 def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
-    """The lag that both halves of the data agree on.
-
-    A clock is late all the time; tissue and a motion that shows little look late in one half and not in the other.
-
-    Parameters
-    ----------
-    knots_rad : (k,)
-        Relative heading, decided before.
-
-    Returns
-    -------
-    Lag
-        0 where no lag is found.
-    """
+    """Find the distal lag that both halves of the data agree on, else 0; `knots_rad` (k,): relative heading."""
     lag = smoothest_lag(data, knots_rad)
     if not lag.lag_s:
         return lag
@@ -78,18 +65,7 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
 
 
 def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
-    """Where the accelerations of the joint coincide best below the frequencies of tissue.
-
-    Parameters
-    ----------
-    knots_rad : (k,)
-        Relative heading, decided before.
-
-    Returns
-    -------
-    Lag
-        Of the distal clock, s.
-    """
+    """Find the lag at which the joint's accelerations coincide best below the frequencies of tissue."""
     forces = joint_forces(data, SEARCH_S)
     if len(forces) < MIN_SAMPLES:
         return NO_LAG
@@ -103,20 +79,7 @@ def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
 
 
 def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
-    """Where the accelerations of a hinge coincide best, in whole samples.
-
-    Nothing rings there, and the sharpest changes show most: the accelerations are taken as they are.
-
-    Parameters
-    ----------
-    knots_rad : (k,)
-        Relative heading, decided before.
-
-    Returns
-    -------
-    Lag
-        Of the distal clock, s.
-    """
+    """Find the lag at which a hinge's unfiltered accelerations coincide best, in whole samples."""
     step_s = data.pairs[0].step_s
     inner = _with_room(data, int(np.ceil(SEARCH_S / step_s)))
     if len(inner) < MIN_SAMPLES:

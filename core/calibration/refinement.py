@@ -25,20 +25,9 @@ MAX_CENTRE_STEP_M = 0.05  # a larger move means that the start was wrong, and th
 
 
 def refine_on_hinge(data: Datasets, j1: FloatArray, j2: FloatArray, start: JointCentre) -> JointCentre | None:
-    """Centres and biases of a hinge with axes (3,), from the first guess `start`; None where the fit runs away.
-
-    The residual is a1 - b1 - K1 o1 - R12(theta) (a2 - b2 - K2 o2), the vector form of Seel et al. 2014, eq 7, with
-    theta from eq 11 plus a line between knots.
-
-    Parameters
-    ----------
-    j1, j2 : (3,)
-        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
-
-    Returns
-    -------
-    JointCentre or None
-        Centres in m and accelerometer biases in m/s2, in sensor axes.
+    """Refine a hinge's centres and biases (m, m/s2) from `start`; None where the fit diverges.
+    Residual a1 - b1 - K1 o1 - R12(theta) (a2 - b2 - K2 o2): vector form of Seel et al. 2014, eq 7, theta
+    from eq 11 plus a line between knots.
     """
     theta = np.concatenate(
         [hinge_angle(pair, j1, j2, start.unknowns)[data.index[data.stretch == s]] for s, pair in enumerate(data.pairs)]

@@ -9,18 +9,7 @@ MAX_DISAGREEMENT, STRANGERS_MARGIN = 0.33, 8.0
 
 
 def most_disagreement(margin: float | None) -> float | None:
-    """How much the sensors of one joint may disagree at a margin of their sign; None where the margin proves it.
-
-    Parameters
-    ----------
-    margin
-        Of the best hypothesis over its best rival; None where it is not known.
-
-    Returns
-    -------
-    float or None
-        The share of their accelerations that the best common joint may leave: 0 nothing, 1 all.
-    """
+    """Give the share of acceleration that one joint's fit may leave at a sign margin, 0 to 1; None: no limit."""
     if margin is None or margin < DOUBTFUL_MARGIN:
         return DOUBTFUL_DISAGREEMENT
     return MAX_DISAGREEMENT if margin < STRANGERS_MARGIN else None

@@ -65,21 +65,7 @@ class Slip:
 
 
 def turns_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> Turns:
-    """Turns over the walking in one stretch.
-
-    Each window solves one Gauss-Newton step of the joint's axes and relative heading from the calibrated axes (3,),
-    with the residuals that identify them; their common part is the motion's, the difference is the strap's.
-
-    Parameters
-    ----------
-    axis_1, axis_2 : (3,)
-        Calibrated unit axes, each in its own sensor's axes.
-
-    Returns
-    -------
-    Turns
-        rad, one per window.
-    """
+    """Find turns, rad, per window of walking: the difference of one Gauss-Newton step from the axes (3,)."""
     index = np.flatnonzero(pair.is_moving & pair.is_known)[:: max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))]
     number = ((pair.time_s[index] - pair.time_s[0]) / WINDOW_S).astype(np.int64)
     windows, counts = np.unique(number, return_counts=True)
@@ -135,21 +121,7 @@ def _about_vertical(
 
 
 def slips(turns: Mapping[Joint, Turns], since_calibration_rad: float = MIN_SLIP_SINCE_CALIBRATION_RAD) -> list[Slip]:
-    """Which straps slipped in the walking that `turns` describe, and when; the first slip of each side.
-
-    A shank's sensor that turns shows in its knee and, the other way round, in its ankle; a thigh's in the knee alone, a
-    foot's in the ankle alone.
-
-    Parameters
-    ----------
-    since_calibration_rad
-        A greater turn at the very beginning is a slip before it; infinite where the axes are not to be trusted so far.
-
-    Returns
-    -------
-    list of Slip
-        At most one per side; times as in `turns`.
-    """
+    """Find each side's first strap slip by turns of knee and ankle; a great turn at the start is one before."""
     found = []
     for side in Side:
         mine = [turns.get(joint) for joint in (knee_of(side), ankle_of(side))]
@@ -166,20 +138,7 @@ def slips_in_walks(
     calibration: Mapping[Joint, JointCalibration],
     lag_s: Callable[[str, Joint], float],
 ) -> list[tuple[Recording, Slip]]:
-    """Slips in walks that one calibration measures, each with the walk it happened in; times are that walk's own.
-
-    Parameters
-    ----------
-    walks
-        In order of time; what is usual in one holds in the next.
-    lag_s
-        Gives, by the recording's name and the joint, what is added to the distal clock.
-
-    Returns
-    -------
-    list of Recording and Slip
-        In order of time.
-    """
+    """Find slips in walks of one calibration, in order of time on each walk's own clock."""
     starts_s = np.cumsum([0.0, *(last - first for first, last in map(tracks.span_of, walks))])
     turns = {}
     for joint, found in calibration.items():
@@ -214,11 +173,7 @@ def _is_in_place(walk: Recording) -> bool:
 
 
 def is_refuted(tracks: SensorTracks, walk: Recording, slip: Slip) -> bool:
-    """Whether a foot's sensor that seems to have turned a little feels gravity at rest where it did before.
-
-    Thigh and shank hang along the vertical, about which their straps slip, so gravity shows nothing of them. The
-    instep slopes: a strap that slips there takes the vertical with it, by a third of the turn and more.
-    """
+    """Whether gravity at rest, unchanged, refutes a small turn of a foot's sensor; False for thigh and shank."""
     if slip.site.segment is not Segment.FOOT or abs(slip.turn_rad) > MAX_REFUTED_RAD:
         return False
     block, first = walk.imu[slip.site], tracks.span.index(walk)

@@ -7,22 +7,7 @@ from core.signal.rotations import joint_frame, wrap
 
 
 def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, axis_2: FloatArray) -> float:
-    """Twist in standing, radians: arg(z(a1) conj z(a2)) of the mean specific forces (3,) of both sensors.
-
-    Needs no heading and no centre, so the recording of standing may be one of its own.
-
-    Parameters
-    ----------
-    down_1, down_2 : (3,)
-        Mean specific force of the proximal and the distal sensor in standing, m/s2, in sensor axes.
-    axis_1, axis_2 : (3,)
-        Unit axes of both, each in its own sensor's axes.
-
-    Returns
-    -------
-    float
-        rad, -pi to pi.
-    """
+    """Give the twist in standing, arg(z(a1) conj z(a2)) of mean forces (3,), -pi to pi; no heading needed."""
     z1, z2 = (
         complex(down @ x, down @ y)
         for down, (x, y) in zip((down_1, down_2), map(joint_frame, (axis_1, axis_2)), strict=True)
@@ -31,36 +16,14 @@ def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, a
 
 
 def within_half_a_turn(samples_rad: FloatArray, of_rad: float | None = None) -> FloatArray:
-    """Scattered samples (n,) of an angle brought within half a turn of `of_rad`, or of their mean direction.
-
-    Parameters
-    ----------
-    samples_rad : (n,)
-        In any order.
-
-    Returns
-    -------
-    (n,)
-        rad.
-    """
+    """Bring angle samples (n,), rad, within half a turn of `of_rad`, or of their mean direction."""
     if of_rad is None:
         of_rad = float(np.angle(np.mean(np.exp(1j * samples_rad)))) if samples_rad.size else 0.0
     return of_rad + wrap(samples_rad - of_rad)
 
 
 def wrapped_to_zero(angle_rad: FloatArray) -> FloatArray:
-    """The angle (n,) moved by whole turns so that its median lies within half a turn of zero.
-
-    Parameters
-    ----------
-    angle_rad : (n,)
-        NaN in gaps.
-
-    Returns
-    -------
-    (n,)
-        rad, NaN where it was.
-    """
+    """Move an angle (n,), NaN in gaps, by whole turns so that its median is within half a turn of zero."""
     if not np.isfinite(angle_rad).any():
         return angle_rad
     return angle_rad - 2 * np.pi * np.round(np.nanmedian(angle_rad) / (2 * np.pi))

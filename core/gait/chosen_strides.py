@@ -18,13 +18,7 @@ from core.verdicts.walk_findings import about_walk
 
 
 def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
-    """The analysis without the strides that `recordings` name; the findings about their walks are made again.
-
-    Parameters
-    ----------
-    analysis
-        In which nothing was left out by hand yet.
-    """
+    """Give the analysis without strides left out by hand, and its findings computed again."""
     chosen = {recording.name: recording.left_out_s for recording in recordings if any(recording.left_out_s.values())}
     if not chosen:
         return analysis

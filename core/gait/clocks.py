@@ -56,24 +56,15 @@ class LegSteps:
 class LegClocks:
     """Evidence that both legs' sensors share one time in one walk, and what follows.
 
-    Attributes
-    ----------
-    residual_s
-        How far apart the clocks may still be; NaN where nothing ties them.
-    lag_s
-        The largest lag found inside of a leg.
-    step_share_percent
-        The left step's share of both steps, NaN without steps of both feet. Two clocks that are off by 0.1 of a stride
-        shift it by 10 points.
-    stance_difference_percent
-        Left less right.
+    `step_share_percent`: the left step's share of both steps, NaN without steps of both feet. Two clocks that are off
+    by 0.1 of a stride shift it by 10 points.
     """
 
     tie: ClockTie
-    residual_s: float
-    lag_s: float
+    residual_s: float  # how far apart the clocks may still be; NaN where nothing ties them
+    lag_s: float  # the largest lag found inside of a leg
     step_share_percent: float
-    stance_difference_percent: float
+    stance_difference_percent: float  # left less right
 
     @property
     def gate(self) -> ClockGate:
@@ -100,20 +91,7 @@ class LegClocks:
 def leg_clocks(
     session: Session, recording: Recording, steps: Mapping[Side, LegSteps], lags_s: Mapping[Joint, float]
 ) -> LegClocks:
-    """What the session states, the stamps prove and the steps contradict about the clocks of both legs.
-
-    Parameters
-    ----------
-    steps
-        Of the legs that walked in this recording.
-    lags_s
-        Of each joint, as found between its two sensors.
-
-    Returns
-    -------
-    LegClocks
-        Times in seconds.
-    """
+    """Judge both legs' clocks by what the session states, stamps prove and steps contradict."""
     tie, residual_s = _tie(session, recording, steps)
     share, difference = _share_and_difference(steps)
     lag_s = max((abs(one) for one in lags_s.values()), default=0.0)
@@ -132,23 +110,7 @@ def _tie(session: Session, recording: Recording, steps: Mapping[Side, LegSteps])
 
 
 def stamps_residual_s(one_s: FloatArray, other_s: FloatArray) -> float:
-    """How far apart two sensors' ascending stamps (n,), (m,) leave their clocks, if they prove a common one; else NaN.
-
-    They do where sample for sample they are irregular together, as one receiver's are; or where they begin and end
-    together at rates that are their own, as stamps that were fitted to the host's clock do.
-
-    Parameters
-    ----------
-    one_s : (n,)
-        Ascending.
-    other_s : (m,)
-        Ascending.
-
-    Returns
-    -------
-    float
-        s; NaN where nothing is proved.
-    """
+    """Give how far apart ascending stamps (n,), (m,) leave two clocks, s; NaN: no common one is proven."""
     if min(len(one_s), len(other_s)) < MIN_SAMPLES:
         return float("nan")
     apart_s = np.abs(np.array([one_s[0] - other_s[0], one_s[-1] - other_s[-1]]))

@@ -17,43 +17,8 @@ class Onset:
     reach: float
 
 
-def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) first passes `level`; NaN where it does not.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    float
-        Index between samples, or NaN.
-    """
-    return _crossing(signal, first, last, level, 0)
-
-
-def last_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) last passes `level`; NaN where it does not.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    float
-        Index between samples, or NaN.
-    """
-    return _crossing(signal, first, last, level, -1)
-
-
-def _crossing(signal: FloatArray, first: int, last: int, level: float, which: int) -> float:
+def crossing(signal: FloatArray, first: int, last: int, level: float, which: int = 0) -> float:
+    """Give the fractional index in first..last where `signal` (n,) first (`which` -1: last) passes `level`; or NaN."""
     above = signal[first : last + 1] - level
     passes = np.flatnonzero((above[1:] > 0) != (above[:-1] > 0))
     if not len(passes):
@@ -63,24 +28,9 @@ def _crossing(signal: FloatArray, first: int, last: int, level: float, which: in
 
 
 def onset(signal: FloatArray, peak: int, rest: int, level: float) -> Onset:
-    """Where a signal (n,) that is next to zero at index `rest` begins to grow towards its peak.
-
-    Extrapolated from where it passes `level` and its double.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    Onset
-        Index between samples.
-    """
+    """Give where a signal (n,), near zero at `rest`, begins to grow, extrapolated from `level` and its double."""
     first, last, which = (rest, peak, -1) if rest < peak else (peak, rest, 0)
-    low, high = (_crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
+    low, high = (crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
     if not np.isfinite(low):
         return Onset(float(rest), 0.0)
     reach = ONSET_RATIO * (low - high) if np.isfinite(high) else 0.0

@@ -29,19 +29,7 @@ class Peak:
 
 
 def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s: FloatArray) -> FloatArray:
-    """The angle over each stride at 0, 1, ... 100 % (k, 101); a stride with a gap, or not wholly recorded, is NaN.
-
-    Parameters
-    ----------
-    time_s, angle : (n,)
-        Ascending instants, and NaN where the angle is not known; missing instants are a gap as well.
-    start_s, end_s : (k,)
-
-    Returns
-    -------
-    (k, 101)
-        In the unit of the angle.
-    """
+    """Resample an angle (n,) to 0 to 100 % of each stride (k, 101); strides with gaps or cut off are NaN."""
     share = np.linspace(0.0, 1.0, POINTS)
     at_s = start_s[:, None] + (end_s - start_s)[:, None] * share
     if len(time_s) < 2:
@@ -61,18 +49,7 @@ def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s:
 
 
 def mean_cycle(cycles: FloatArray) -> MeanCycle:
-    """Over the strides of (k, 101) that are known.
-
-    Parameters
-    ----------
-    cycles : (k, 101)
-        One row per stride, NaN throughout where it is not known.
-
-    Returns
-    -------
-    MeanCycle
-        In the unit of the cycles.
-    """
+    """Average the known strides of (k, 101), NaN: unknown."""
     known = cycles[np.isfinite(cycles).all(axis=1)]
     unknown = np.full(POINTS, np.nan)
     mean = known.mean(axis=0) if len(known) else unknown
@@ -81,20 +58,7 @@ def mean_cycle(cycles: FloatArray) -> MeanCycle:
 
 
 def find_peak(cycles: FloatArray, window: PeakWindow) -> Peak:
-    """The extremum of each stride (k, 101) within the window; missing strides are NaN throughout.
-
-    One at the window's edge in half of the strides or more is no peak: the angle only passes through.
-
-    Parameters
-    ----------
-    cycles : (k, 101)
-        One row per stride, NaN throughout where it is not known.
-
-    Returns
-    -------
-    Peak
-        In the unit of the cycles; when, in percent of the stride.
-    """
+    """Find each stride's extremum (k, 101) within the window; none if at its edge in half of the strides."""
     n = len(cycles)
     is_known = ~np.isnan(cycles[:, 0])  # cycles are whole or missing
     nothing = Peak(np.full(n, np.nan), np.full(n, np.nan))
@@ -110,20 +74,7 @@ def find_peak(cycles: FloatArray, window: PeakWindow) -> Peak:
 
 
 def excursion_of_cycles(cycles: FloatArray, excursion: Excursion) -> FloatArray:
-    """The highest of one window less the lowest of the other (k,), of each stride (k, 101).
-
-    NaN throughout where the angle only passes through one of them.
-
-    Parameters
-    ----------
-    cycles : (k, 101)
-        One row per stride, NaN throughout where it is not known.
-
-    Returns
-    -------
-    (k,)
-        In the unit of the cycles.
-    """
+    """Give one window's maximum less the other's minimum (k,) of cycles (k, 101); NaN if either is no peak."""
     contact = cycles[:, 0] if len(cycles) else np.empty(0)
     high, low = (
         find_peak(cycles, window).value if window is not None else contact for window in (excursion.high, excursion.low)
@@ -132,16 +83,5 @@ def excursion_of_cycles(cycles: FloatArray, excursion: Excursion) -> FloatArray:
 
 
 def range_of_cycles(cycles: FloatArray) -> FloatArray:
-    """Largest less smallest angle (k,) of each stride (k, 101).
-
-    Parameters
-    ----------
-    cycles : (k, 101)
-        One row per stride, NaN throughout where it is not known.
-
-    Returns
-    -------
-    (k,)
-        In the unit of the cycles.
-    """
+    """Give the range (k,) of each stride's cycle (k, 101), in its unit."""
     return cycles.max(axis=1) - cycles.min(axis=1)

@@ -22,7 +22,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from core.gait.crossings import Onset, first_crossing, last_crossing, onset
+from core.gait.crossings import Onset, crossing, onset
 from core.gait.foot import FootMotion, follow
 from core.gait.rolling import LANDING_SHARES, LEAST_SWINGS, landing_marks, leaving_marks, sharpest, timed_by
 from core.gait.sole import SoleTravel, travel_of
@@ -106,18 +106,11 @@ class FootEvents:
 
     Heel rise and full contact are NaN where they are not known.
 
-    Attributes
-    ----------
-    length_m, height_m, climb_m, turn_rad
-        How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how much higher the
-        foot came to stand, how far it turned about the vertical; NaN from a shank.
-    is_certain
-        False where the contacts themselves are in doubt: the foot's pitch contradicts its way.
-    is_measured
-        False where samples were missing between heel rise and full contact.
-    source, sd_s : (k, 4)
-        What gave each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where
-        unknown.
+    `length_m`, `height_m`, `climb_m`, `turn_rad`: how far the swing carried the foot over the floor, how high the
+    sensor (not the toe) rose, how much higher the foot came to stand, how far it turned about the vertical; NaN from a
+    shank.
+    `source`, `sd_s`: (k, 4): what gave each event, an index into SOURCES, and its standard deviation; columns as
+    EVENTS, NaN where unknown.
     """
 
     heel_rise_s: FloatArray
@@ -128,8 +121,8 @@ class FootEvents:
     height_m: FloatArray
     climb_m: FloatArray
     turn_rad: FloatArray
-    is_certain: BoolArray
-    is_measured: BoolArray
+    is_certain: BoolArray  # False where the contacts themselves are in doubt: the foot's pitch contradicts its way
+    is_measured: BoolArray  # False where samples were missing between heel rise and full contact
     source: IntArray
     sd_s: FloatArray
     is_from_shank: bool = False
@@ -173,20 +166,7 @@ def gait_of(foot: OrientedTrack, is_rigid: bool = False) -> FootEvents:
 
 
 def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = False) -> FootEvents:
-    """Events of every swing of `motion`.
-
-    Parameters
-    ----------
-    is_measured : (n,)
-        As `Track.is_measured`.
-    is_rigid
-        As `gait_of`.
-
-    Returns
-    -------
-    FootEvents
-        One row per swing, seconds on the clock of `motion`.
-    """
+    """Detect the events of every swing, s on the motion's clock; `is_measured` (n,) as in `Track`."""
     rate, swings, sole = motion.pitch_rate_rad_s, motion.swings, travel_of(motion)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
     leaving = [rate[a : m + 1] for a, m, _ in spans]
@@ -283,7 +263,7 @@ def _leaving(rate: FloatArray, usual: Usual, begin: int = 0) -> tuple[Onset, Ons
     if -rate[push] <= MIN_ROLL_RAD_S:
         return Onset(np.nan, 0.0), Onset(np.nan, 0.0)
     rise = onset(-rate, push, 0, usual.still_rad_s)
-    off = first_crossing(rate, push, len(rate) - 1, TOE_OFF_SHARE * rate[push])
+    off = crossing(rate, push, len(rate) - 1, TOE_OFF_SHARE * rate[push])
     return Onset(rise.index + begin, rise.reach), Onset(off + begin, 0.0)
 
 
@@ -337,15 +317,7 @@ def _even_out_others(
 
 
 def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> None:
-    """Time a toe-off that lies far from where the foot's others lie before the swing is fastest as they do; in place.
-
-    A sensor that shakes on its foot shows other peaks than that of push-off.
-
-    Parameters
-    ----------
-    fastest : (k,)
-        Index of the sample in each swing at which the foot is fastest.
-    """
+    """Move stray toe-offs to the foot's usual time before the fastest sample, `fastest` (k,); in place."""
     if len(fastest) < LEAST_SWINGS:
         return
     before = fastest - timing.index[:, TOE_OFF]
@@ -393,8 +365,8 @@ def _marks(pitch: FloatArray, rest: int, fastest: int, next_rest: int) -> tuple[
     lowest = rest + int(np.argmin(pitch[rest : fastest + 1]))
     highest = fastest + int(np.argmax(pitch[fastest : next_rest + 1]))
     return (
-        first_crossing(pitch, rest, lowest, 0.5 * pitch[lowest]),
-        last_crossing(pitch, highest, next_rest, 0.5 * pitch[highest]),
+        crossing(pitch, rest, lowest, 0.5 * pitch[lowest]),
+        crossing(pitch, highest, next_rest, 0.5 * pitch[highest], which=-1),
     )
 
 
@@ -417,8 +389,8 @@ def _mean_rate(rates: list[FloatArray], marks: FloatArray, usual: Usual) -> Mean
 
 def _contact(rate: FloatArray, load: int, level: float, step_s: float) -> float:
     """Where the rate, on its last way down to the peak of loading, reaches `level`, LANDED_S after its half at most."""
-    falls = last_crossing(rate, 0, load, 0.0)
+    falls = crossing(rate, 0, load, 0.0, which=-1)
     if not np.isfinite(falls):
         return float("nan")
-    half, whole = (first_crossing(rate, int(falls), load, share * level) for share in (0.5 / CONTACT_SHARE, 1.0))
+    half, whole = (crossing(rate, int(falls), load, share * level) for share in (0.5 / CONTACT_SHARE, 1.0))
     return float(np.fmin(whole, half + LANDED_S / step_s))

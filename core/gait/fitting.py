@@ -20,18 +20,7 @@ SWING_PEAK = KNEE_WINDOWS[-1]
 
 
 def late_swing_of_knee(cycles: FloatArray) -> dict[str, FloatArray]:
-    """How straight the knee becomes before it bears weight, and how early it is there, of each stride (k, 101).
-
-    Parameters
-    ----------
-    cycles : (k, 101)
-        Knee flexion, rad; NaN throughout where it is not known.
-
-    Returns
-    -------
-    dict
-        Name to (k,), rad or percent of the stride; NaN where the knee has no peak in swing.
-    """
+    """Measure each stride's knee (k, 101), rad, in late swing: extension and its time; NaN: no peak in swing."""
     peak = find_peak(cycles, SWING_PEAK).percent
     extension, early = np.full(len(cycles), np.nan), np.full(len(cycles), np.nan)
     known = np.flatnonzero(np.isfinite(peak))
@@ -48,18 +37,7 @@ def late_swing_of_knee(cycles: FloatArray) -> dict[str, FloatArray]:
 
 
 def foot_measures(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray) -> dict[str, FloatArray]:
-    """How long a foot rests flat, how it lands and how far its heel comes up, of each stride.
-
-    Parameters
-    ----------
-    time_s, pitch_rad : (n,)
-        Pitch of the foot, toes up, zero where it rests flat; NaN where not known.
-
-    Returns
-    -------
-    dict
-        Name to (k,), percent or rad.
-    """
+    """Measure foot-flat time, landing pitch and heel rise per stride, (k,); pitch (n,) toes up, zero flat."""
     flat = np.maximum(strides.heel_rise_s - strides.full_contact_s, 0.0)
     cycles = cycles_of(time_s, pitch_rad, strides.start_s, strides.end_s)
     middle = 0.5 * (strides.toe_off_s + strides.end_s)
@@ -89,20 +67,7 @@ def shank_to_foot(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray, l
 def inclination_measures(
     strides: Strides, time_s: FloatArray, inclinations: Mapping[Segment, FloatArray]
 ) -> dict[str, FloatArray]:
-    """How thigh and shank lean through stance, and how far the shank turns over each rocker.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Clock of strides and inclinations.
-    inclinations
-        Of thigh and shank (n,), rad, forward positive, NaN where not known.
-
-    Returns
-    -------
-    dict
-        Name to (k,), rad.
-    """
+    """Measure thigh and shank lean in stance and shank turn per rocker, (k,), rad; inclinations (n,) forward."""
     instants = {
         "initial_contact": strides.start_s,
         "full_contact": strides.full_contact_s,

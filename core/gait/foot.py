@@ -74,39 +74,25 @@ class FootRest:
 class FootMotion:
     """One foot over one track.
 
-    Attributes
-    ----------
-    pitch_axis : (3,)
-        In sensor axes; turning about it lifts the toes.
-    pitch_rate_rad_s, pitch_rad : (n,)
-        Toes up positive; the pitch is zero in the rest of each stance.
-    velocity_m_s, acceleration_m_s2 : (n, 3)
-        Of the sensor, in earth axes.
-    travel_m : (k, 2)
-        How far each swing carried the foot over the floor.
-    height_m : (k,)
-        How high the sensor rose over the line from its place in the stance before to that in the stance after.
-    climb_m : (k,)
-        How much higher the foot stood after each swing than before it.
-    turn_rad : (k,)
-        How far each swing turned the foot about the vertical.
-    is_direction_certain
-        What the pitch and what the way of walking say about the toes agree.
+    `pitch_rate_rad_s`, `pitch_rad`: (n,): toes up positive; the pitch is zero in the rest of each stance.
+    `velocity_m_s`, `acceleration_m_s2`: (n, 3): of the sensor, in earth axes.
+    `height_m`: (k,): how high the sensor rose over the line from its place in the stance before to that in the stance
+    after.
     """
 
     start_s: float
     step_s: float
     swings: Swings
-    pitch_axis: FloatArray
+    pitch_axis: FloatArray  # (3,): in sensor axes; turning about it lifts the toes
     pitch_rate_rad_s: FloatArray
     pitch_rad: FloatArray
     velocity_m_s: FloatArray
     acceleration_m_s2: FloatArray
-    travel_m: FloatArray
+    travel_m: FloatArray  # (k, 2): how far each swing carried the foot over the floor
     height_m: FloatArray
-    climb_m: FloatArray
-    turn_rad: FloatArray
-    is_direction_certain: bool
+    climb_m: FloatArray  # (k,): how much higher the foot stood after each swing than before it
+    turn_rad: FloatArray  # (k,): how far each swing turned the foot about the vertical
+    is_direction_certain: bool  # what the pitch and what the way of walking say about the toes agree
 
     def time_of(self, index: FloatArray) -> FloatArray:
         """Seconds at fractional indices of samples (...,)."""

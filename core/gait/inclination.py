@@ -13,20 +13,7 @@ from core.signal.rotations import joint_frame, wrap
 
 
 def lean_about(axis: FloatArray, up: FloatArray) -> FloatArray:
-    """Turn (n,) of a segment about its joint axis against the vertical, rad, from a zero of the sensor's own.
-
-    Parameters
-    ----------
-    axis : (3,)
-        Unit vector, in sensor axes.
-    up : (n, 3)
-        The vertical, in sensor axes; of any length.
-
-    Returns
-    -------
-    (n,)
-        Without jumps; NaN where `up` is. Right-handed about `axis`.
-    """
+    """Give the turn (n,) of a segment against the vertical `up` (n, 3) about `axis` (3,), rad, arbitrary zero."""
     x, y = joint_frame(axis)
     lean = -np.arctan2(up @ y, up @ x)  # what the segment turns by, the vertical turns back by in its axes
     known = np.isfinite(lean)
@@ -37,24 +24,7 @@ def lean_about(axis: FloatArray, up: FloatArray) -> FloatArray:
 def inclination(
     lean_rad: FloatArray, axis: FloatArray, standing_up: FloatArray | None, clinical_sign: int
 ) -> FloatArray:
-    """Forward inclination (n,) of thigh or shank, rad, the upper end forward positive, zero as in standing.
-
-    Parameters
-    ----------
-    lean_rad : (n,)
-        Of `lean_about`, NaN where unknown.
-    axis : (3,)
-        Of the knee, in the sensor's axes.
-    standing_up : (3,) or None
-        The vertical in standing, in the sensor's axes. Without it the zero is the median, and only differences hold.
-    clinical_sign
-        1 or -1; what turns the axis so that turning the shank about it bends the knee.
-
-    Returns
-    -------
-    (n,)
-        Within half a turn.
-    """
+    """Give forward inclination (n,) of thigh or shank, rad, upper end forward, from standing or the median."""
     known = lean_rad[np.isfinite(lean_rad)]
     if standing_up is not None:
         zero = float(lean_about(axis, standing_up[None, :])[0])

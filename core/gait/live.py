@@ -51,56 +51,31 @@ class LiveEventSettings:
     Sources are named where one is on record. Where none is, the value is a choice of this project whose reason is all
     that was written down; `tests/benchmarks/live_gait.py` measures how the events do with all of them.
 
-    Attributes
-    ----------
-    max_delay_s
-        Longest time from an event to the sample that reports it, unless it is late. Source: the display, which draws
-        every 33 ms and so shows an event when it is 0.13 s old at most.
-    memory
-        Steps whose peaks and times say what is usual.
-    passed_share
-        Of its peak: a rate that has fallen so far has passed it.
-    sure_ratio
-        Of the rate of rest: a heel that turns so fast has risen.
-    early_ratio
-        Of the rate of rest: enough for a heel rise where waiting for the double would be too late.
-    growth
-        The pitch rate grows as this power of time after heel rise. Source: `ONSET_RATIO` in `core.gait.crossings`.
-    min_flat_s
-        A foot stays flat longer than this; a loading shock does not.
-    standing_s
-        A foot flat for longer is standing. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
-    max_push_s
-        From the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
-    first_load_share
-        Peak of loading as a share of the peak of push-off, until a loading has been seen.
-    min_swing_s
-        An earlier fall of the toes is not the landing. Source: a third of the swing at 2 m/s.
-    sway_ratio
-        A heel rise is so many times faster than the sways of the last stances.
-    sway_memory
-        Share of the fastest sway that is remembered after one step.
-    max_swing_s
-        After longer the landing was missed. Source: more than twice the swing at 0.3 m/s.
-    landing_share
-        Of its greatest speed in this swing: a foot that is faster is in mid-swing.
+    `max_delay_s`: longest time from an event to the sample that reports it, unless it is late. Source: the display,
+    which draws every 33 ms and so shows an event when it is 0.13 s old at most.
+    `early_ratio`: of the rate of rest: enough for a heel rise where waiting for the double would be too late.
+    `growth`: the pitch rate grows as this power of time after heel rise. Source: `ONSET_RATIO` in
+    `core.gait.crossings`.
+    `standing_s`: a foot flat for longer is standing. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each
+    stride.
+    `max_push_s`: from the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
     """
 
     max_delay_s: float = 0.095
-    memory: int = 5
-    passed_share: float = 0.6
-    sure_ratio: float = 5.0
+    memory: int = 5  # steps whose peaks and times say what is usual
+    passed_share: float = 0.6  # of its peak: a rate that has fallen so far has passed it
+    sure_ratio: float = 5.0  # of the rate of rest: a heel that turns so fast has risen
     early_ratio: float = 1.8
     growth: float = 1.75
-    min_flat_s: float = 0.06
+    min_flat_s: float = 0.06  # A foot stays flat longer than this; a loading shock does not
     standing_s: float = 1.5
     max_push_s: float = 0.3
-    first_load_share: float = 0.7
-    min_swing_s: float = 0.12
-    sway_ratio: float = 2.0
-    sway_memory: float = 0.85
-    max_swing_s: float = 1.5
-    landing_share: float = 0.7
+    first_load_share: float = 0.7  # peak of loading as a share of the peak of push-off, until a loading has been seen
+    min_swing_s: float = 0.12  # an earlier fall of the toes is not the landing. Source: a third of the swing at 2 m/s.
+    sway_ratio: float = 2.0  # A heel rise is so many times faster than the sways of the last stances
+    sway_memory: float = 0.85  # share of the fastest sway that is remembered after one step
+    max_swing_s: float = 1.5  # after longer the landing was missed. Source: more than twice the swing at 0.3 m/s.
+    landing_share: float = 0.7  # of its greatest speed in this swing: a foot that is faster is in mid-swing
 
 
 SETTINGS = LiveEventSettings()
@@ -159,8 +134,11 @@ class LiveEvents:
         self._motion = LiveMotion(pitch_axis)
         self._time_s, self._step_s = math.nan, math.nan
         self._events: list[LiveEvent] = []
-        self._changes: list[PhaseChange] = []
-        self._phase = Phase.UNKNOWN
+        self.changes: list[PhaseChange] = []
+        """What the samples of the last update made of the phase. Between two phases found at one sample it may have
+        passed others: its events name them."""
+        self.phase = Phase.UNKNOWN
+        """The foot's phase now, as far as known: pre-swing is shown at once and may turn out to be a sway."""
         self._path: list[Sample] = []  # since the phase began, or since the rate last showed that it cannot end yet
         self._pushes: deque[float] = deque(maxlen=SETTINGS.memory)
         self._loads: deque[float] = deque(maxlen=SETTINGS.memory)
@@ -179,22 +157,9 @@ class LiveEvents:
         self._waiting: list[tuple[float, Vector, float]] = []  # time, rate, speed, while there is no axis
 
     @property
-    def phase(self) -> Phase:
-        """The foot's phase now, as far as known: pre-swing is shown at once and may turn out to be a sway."""
-        return self._phase
-
-    @property
     def pitch_axis(self) -> Vector | None:
         """About which the foot pitches, in sensor axes: a positive rate lifts the toes; None while it is not known."""
         return self._motion.pitch_axis
-
-    @property
-    def changes(self) -> list[PhaseChange]:
-        """What the samples of the last update made of the phase.
-
-        Between two phases found at one sample it may have passed others: its events name them.
-        """
-        return self._changes
 
     @property
     def cadence_steps_min(self) -> float:
@@ -213,30 +178,30 @@ class LiveEvents:
         gyr_rad_s, acc_m_s2 : (n, 3)
             In sensor axes, NaN where a sample is missing; the rates free of the gyroscope's bias.
         """
-        self._events, self._changes = [], []
+        self._events, self.changes = [], []
         for now_s, gyr, acc in zip(time_s.tolist(), gyr_rad_s.tolist(), acc_m_s2.tolist(), strict=True):
             step_s = now_s - self._time_s
             if not math.isfinite(sum(gyr) + sum(acc)) or step_s <= 0.0:
                 continue
-            last_s, last_phase, events_before = self._time_s, self._phase, len(self._events)
+            last_s, last_phase, events_before = self._time_s, self.phase, len(self._events)
             self._time_s, self._step_s = now_s, step_s
             if step_s <= MAX_REPORTED_GAP_S:
                 self._take(gyr, acc)
             else:  # so does the first sample of all, whose step is NaN
                 self._forget_the_step()
-            if self._phase is not last_phase or len(self._events) > events_before:
-                since_s = last_s if self._phase is Phase.UNKNOWN else self._since_s(now_s)
-                self._changes.append(PhaseChange(self._phase, since_s, now_s))
+            if self.phase is not last_phase or len(self._events) > events_before:
+                since_s = last_s if self.phase is Phase.UNKNOWN else self._since_s(now_s)
+                self.changes.append(PhaseChange(self.phase, since_s, now_s))
         return self._events
 
     def _since_s(self, now_s: float) -> float:
         """Since when the foot is in the phase that the sample at `now_s` put it into."""
         last = self._events[-1] if self._events else None
-        is_by_event = last is not None and last.reported_s == now_s and PHASE_AFTER[last.event] is self._phase
+        is_by_event = last is not None and last.reported_s == now_s and PHASE_AFTER[last.event] is self.phase
         return last.time_s if last is not None and is_by_event else now_s
 
     def _forget_the_step(self) -> None:
-        self._phase, self._path, self._waiting, self._flat_since_s = Phase.UNKNOWN, [], [], -math.inf
+        self.phase, self._path, self._waiting, self._flat_since_s = Phase.UNKNOWN, [], [], -math.inf
         self._contacts_s.clear()
         self._motion.start_again()
 
@@ -245,7 +210,7 @@ class LiveEvents:
         motion.add(self._time_s, self._step_s, gyr, acc, 2.0 * self._still)
         if motion.travelled:
             self._arrive(motion.travelled)
-        if self._phase is Phase.UNKNOWN and motion.calm_s > SETTINGS.min_flat_s:
+        if self.phase is Phase.UNKNOWN and motion.calm_s > SETTINGS.min_flat_s:
             self._stand(-math.inf)
         if motion.flat_s > SETTINGS.min_flat_s:
             self._rest()
@@ -272,7 +237,7 @@ class LiveEvents:
         fastest = max(range(len(speeds)), key=lambda k: speeds[k][1])
         level = FLAT_SHARE * speeds[fastest][1]
         on_s = next((_crossing(a, b, level) for a, b in pairwise(speeds[fastest:]) if b[1] <= level), self._time_s)
-        if self._phase is Phase.SWING:
+        if self.phase is Phase.SWING:
             self._slow_s = on_s
             return
         is_reported = self._contact_s >= travelled[0][0]
@@ -289,22 +254,22 @@ class LiveEvents:
             self._motion.forget_axis()
         else:
             self._motion.rest()
-        if self._motion.flat_s > 2.0 * SETTINGS.min_flat_s and self._phase not in (Phase.FOOT_FLAT, Phase.PRE_SWING):
+        if self._motion.flat_s > 2.0 * SETTINGS.min_flat_s and self.phase not in (Phase.FOOT_FLAT, Phase.PRE_SWING):
             self._end_landing()
 
     def _end_landing(self) -> None:
         """Report what is still to be reported of a foot that has come down."""
-        if self._phase is Phase.SWING and self._dip:
+        if self.phase is Phase.SWING and self._dip:
             self._touch_down(self._contact(self._dip, -self._peak), self._dip)
-        elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
+        elif self.phase is Phase.SWING and not math.isnan(self._slow_s):
             self._show_message(FootEvent.INITIAL_CONTACT, self._slow_s)
-        if self._phase is Phase.LOADING and self._full_s is not None:
+        if self.phase is Phase.LOADING and self._full_s is not None:
             self._show_message(FootEvent.FULL_CONTACT, self._full_s)
-        is_landing = self._phase in (Phase.SWING, Phase.LOADING)
+        is_landing = self.phase in (Phase.SWING, Phase.LOADING)
         self._stand(self._time_s if is_landing else self._flat_since_s)
 
     def _stand(self, since_s: float) -> None:
-        self._phase, self._path, self._flat_since_s = Phase.FOOT_FLAT, [], since_s
+        self.phase, self._path, self._flat_since_s = Phase.FOOT_FLAT, [], since_s
 
     def _show_message(self, event: FootEvent, time_s: float) -> None:
         self._events.append(LiveEvent(event, time_s, self._time_s))
@@ -321,13 +286,13 @@ class LiveEvents:
         return self._time_s + self._step_s - time_s > SETTINGS.max_delay_s
 
     def _advance(self, now: Sample, speed_m_s: float) -> None:
-        if self._phase is Phase.SWING:
+        if self.phase is Phase.SWING:
             self._land(now, speed_m_s)
-        elif self._phase is Phase.LOADING:
+        elif self.phase is Phase.LOADING:
             self._settle(now)
-        elif self._phase is Phase.PRE_SWING:
+        elif self.phase is Phase.PRE_SWING:
             self._leave(now, speed_m_s)
-        elif self._phase is Phase.FOOT_FLAT:
+        elif self.phase is Phase.FOOT_FLAT:
             self._lift(now)
 
     def _lift(self, now: Sample) -> None:
@@ -338,7 +303,7 @@ class LiveEvents:
         is_walking = now[0] - self._flat_since_s < SETTINGS.standing_s
         is_early = is_walking and now[1] < -SETTINGS.early_ratio * self._still and self._is_due(self._rise(self._still))
         if is_early or now[1] < -2.0 * self._still:
-            self._phase, self._peak, self._off_s = Phase.PRE_SWING, now[1], None
+            self.phase, self._peak, self._off_s = Phase.PRE_SWING, now[1], None
             self._is_walking, self._is_rise_reported = is_walking, False
             self._watch_rise(now)
 
@@ -377,7 +342,7 @@ class LiveEvents:
         if not self._is_rise_reported:
             self._show_rise(self._rise(self._still))
         self._show_message(FootEvent.TOE_OFF, self._off_s)
-        self._phase, self._path = Phase.SWING, []
+        self.phase, self._path = Phase.SWING, []
         self._left_s, self._slow_s, self._fastest_m_s = self._off_s, math.nan, 0.0
         self._peak, self._dip = 0.0, []
 
@@ -415,7 +380,7 @@ class LiveEvents:
         self._fastest_m_s = max(self._fastest_m_s, speed_m_s)
         since_s = now[0] - self._left_s
         if since_s > SETTINGS.max_swing_s:
-            self._phase, self._path = Phase.UNKNOWN, []
+            self.phase, self._path = Phase.UNKNOWN, []
             return
         self._path.append(now)
         is_near = since_s > SETTINGS.min_swing_s and speed_m_s < SETTINGS.landing_share * self._fastest_m_s
@@ -453,10 +418,10 @@ class LiveEvents:
 
     def _touch_down(self, contact_s: float, path: list[Sample]) -> None:
         self._show_message(FootEvent.INITIAL_CONTACT, contact_s)
-        self._phase, self._path = Phase.LOADING, []
+        self.phase, self._path = Phase.LOADING, []
         self._peak, self._half_s, self._full_s = 0.0, None, None
         for sample in path:
-            if self._phase is Phase.LOADING:
+            if self.phase is Phase.LOADING:
                 self._settle(sample)
 
     def _settle(self, now: Sample) -> None:

@@ -56,18 +56,13 @@ UNTURNED: Turning = (NOT_AT_ALL, NOT_AT_ALL, 0.0)
 class LiveMotion:
     """One foot, in sensor axes.
 
-    Attributes
-    ----------
-    pitch_axis
-        Turning about it lifts the toes; None before the first step.
-    speed_m_s
-        Zero while the foot lies calm.
-    calm_s, flat_s
-        For how long it has been calm as on the floor, though it may roll slowly; and hardly turning besides.
-    travelled
-        Time and velocity from the moment the foot was no longer calm, on the sample when it is calm again; else empty.
-    has_turned_round
-        On the sample that shows that the toes are on the other side than was thought.
+    `pitch_axis`: turning about it lifts the toes; None before the first step.
+    `speed_m_s`: zero while the foot lies calm.
+    `calm_s`, `flat_s`: for how long it has been calm as on the floor, though it may roll slowly; and hardly turning
+    besides.
+    `travelled`: time and velocity from the moment the foot was no longer calm, on the sample when it is calm again;
+    else empty.
+    `has_turned_round`: on the sample that shows that the toes are on the other side than was thought.
     """
 
     def __init__(self, pitch_axis: FloatArray | None) -> None:
@@ -252,13 +247,7 @@ def _since(turning: Turning, then: Turning) -> Turning:
 
 
 def speeds_of(travelled: Travelled) -> list[tuple[float, float]]:
-    """Time and speed of a foot that is calm at the end: what velocity is left there has crept in evenly.
-
-    Returns
-    -------
-    list
-        Pairs of s and m/s.
-    """
+    """Give times, s, and speeds, m/s, of a foot calm at the end, residual velocity removed evenly."""
     start_s, (end_s, (ex, ey, ez)) = travelled[0][0], travelled[-1]
     lasts_s = max(end_s - start_s, 1e-9)
     return [
@@ -269,13 +258,7 @@ def speeds_of(travelled: Travelled) -> list[tuple[float, float]]:
 
 
 def way_of_m(travelled: Travelled) -> float:
-    """How far a foot went that hardly turned, and is calm at the end.
-
-    Returns
-    -------
-    float
-        m, over the floor.
-    """
+    """Give how far, m over the floor, a foot that hardly turned went, calm at the end."""
     total = [0.0, 0.0, 0.0]
     for (a, v), (b, w) in pairwise(travelled):
         total = [s + 0.5 * (b - a) * (p + q) for s, p, q in zip(total, v, w, strict=True)]
@@ -284,13 +267,7 @@ def way_of_m(travelled: Travelled) -> float:
 
 
 def dot(a: Vector, b: Vector) -> float:
-    """Scalar product of two vectors of three plain floats.
-
-    Returns
-    -------
-    float
-        In the product of their units.
-    """
+    """Compute the scalar product of two vectors of three plain floats."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 

@@ -27,23 +27,7 @@ AFTER = (Phase.PRE_SWING, Phase.SWING, Phase.LOADING, Phase.FOOT_FLAT)  # heel r
 
 
 def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
-    """Index (n,) into PHASES at each of the ascending instants; 0, unknown, before the first and after the last event.
-
-    A phase that begins or ends with an event that is not known is unknown: in stance all of them where only the shank
-    wore a sensor.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        On the clock of the events.
-    stretches
-        One foot's events, one item per stretch without gaps.
-
-    Returns
-    -------
-    (n,)
-        Indices into PHASES.
-    """
+    """Give the phase (n,) at ascending instants, an index into PHASES; 0 where a bounding event is unknown."""
     phase = np.zeros(len(time_s), dtype=np.int64)
     for events in stretches:
         if not len(events):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.gait.crossings import first_crossing, last_crossing
+from core.gait.crossings import crossing
 from core.samples import BoolArray, FloatArray
 from core.signal.robust import robust_sd
 
@@ -19,63 +19,28 @@ Spans = Sequence[tuple[int, int, int]]  # of each swing: the rest before, where 
 
 
 def leaving_marks(pitch: FloatArray, spans: Spans) -> FloatArray:
-    """Where the pitch passes its share of the lowest on leaving.
-
-    Parameters
-    ----------
-    pitch : (n,)
-        Toes up positive, rad.
-
-    Returns
-    -------
-    (k,)
-        Indices between samples; NaN where it does not.
-    """
+    """Find where a swing's pitch (n,), rad, passes its share of the lowest on leaving, (k,); NaN: nowhere."""
     marks = np.full(len(spans), np.nan)
     for k, (a, m, _) in enumerate(spans):
         lowest = a + int(np.argmin(pitch[a : m + 1]))
-        marks[k] = last_crossing(pitch, a, lowest, LEAVING_SHARE * pitch[lowest])
+        marks[k] = crossing(pitch, a, lowest, LEAVING_SHARE * pitch[lowest], which=-1)
     return marks
 
 
 def landing_marks(
     pitch: FloatArray, spans: Spans, share: float, lowered: Sequence[int | None] | None = None
 ) -> FloatArray:
-    """Where the pitch passes a share of its highest on landing or, of a foot that lands on its toes, of its lowest.
-
-    Parameters
-    ----------
-    pitch : (n,)
-        Toes up positive, rad.
-    lowered
-        Of each swing, from which index on the toes come down; None where the heel lands first.
-
-    Returns
-    -------
-    (k,)
-        Indices between samples; NaN where it does not.
-    """
+    """Find where pitch (n,), rad, passes a share of its extreme on landing, (k,); `lowered` None: heel first."""
     marks = np.full(len(spans), np.nan)
     for k, (_, m, b) in enumerate(spans):
         toes = None if lowered is None else lowered[k]
         extreme = m + int(np.argmax(pitch[m : b + 1])) if toes is None else toes + int(np.argmin(pitch[toes : b + 1]))
-        marks[k] = first_crossing(pitch, extreme, b, share * pitch[extreme])
+        marks[k] = crossing(pitch, extreme, b, share * pitch[extreme])
     return marks
 
 
 def timed_by(marks: FloatArray, instants: FloatArray) -> tuple[FloatArray, float]:
-    """The same instants as far from their marks as they mostly are, and how much that scatters.
-
-    Parameters
-    ----------
-    marks, instants : (k,)
-        Indices.
-
-    Returns
-    -------
-    (k,) and float
-        Indices, and samples.
-    """
+    """Give instants at the median distance from their marks (k,), and the scatter in samples."""
     apart = instants - marks
     usual = float(np.median(apart))
     return marks + usual, robust_sd(apart - usual)
@@ -84,22 +49,7 @@ def timed_by(marks: FloatArray, instants: FloatArray) -> tuple[FloatArray, float
 def sharpest(
     candidates: Sequence[FloatArray], instants: FloatArray, beside: FloatArray, is_one: BoolArray
 ) -> FloatArray | None:
-    """The marks that scatter least from another event beside, if less than the instants themselves do.
-
-    Parameters
-    ----------
-    candidates
-        Marks (k,) each.
-    instants, beside : (k,)
-        Indices of the event that the marks belong to, and of the other one.
-    is_one : (k,)
-        Which swings count.
-
-    Returns
-    -------
-    (k,) or None
-        NaN where no mark is known on the instant's side of the other event.
-    """
+    """Give the marks (k,) that scatter least from event `beside`, if less than `instants`; NaN: unknown."""
     found, least = None, 1.0
     for marks in candidates:
         is_known = is_one & ((marks - beside) * (instants - beside) >= 0.0)

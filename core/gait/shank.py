@@ -8,7 +8,7 @@ from where the shank ceases to swing forward. What the foot does in between stay
 import numpy as np
 from scipy.signal import find_peaks
 
-from core.gait.crossings import first_crossing
+from core.gait.crossings import crossing
 from core.gait.events import SD_S, SOURCES, EventSource, FootEvents
 from core.gait.foot import MOVING_RAD_S
 from core.samples import FloatArray, IntArray
@@ -24,15 +24,7 @@ CONTACT_AFTER_S = 0.034  # 30 ms at 2 m/s and 40 at 0.3, on the simulated walker
 
 
 def gait_of_shank(shank: OrientedTrack) -> FootEvents:
-    """Initial contact and toe-off of one leg over one stretch without gaps, in any mounting; the rest is NaN.
-
-    The gyroscope's bias must have been removed.
-
-    Returns
-    -------
-    FootEvents
-        One row per swing, seconds on the track's clock; heel rise and full contact NaN.
-    """
+    """Detect initial contact and toe-off (k,) of a leg from its bias-free shank, without gaps; the rest NaN."""
     track = shank.track
     gyr, step_s = track.gyr_rad_s, track.step_s
     axis = _swing_axis(gyr)
@@ -81,7 +73,7 @@ def _swings(rate: FloatArray, step_s: float) -> tuple[FloatArray, IntArray, Floa
     rows = []
     for peak in peaks.tolist():
         before = np.flatnonzero(smooth[max(0, peak - reach) : peak] < 0.0)
-        ceases = first_crossing(smooth, peak, min(peak + reach, len(smooth) - 1), 0.0)
+        ceases = crossing(smooth, peak, min(peak + reach, len(smooth) - 1), 0.0)
         on = ceases + CONTACT_AFTER_S / step_s
         if len(before) and on < len(smooth) - 1:  # not so where it never ceases
             rows.append((_trough_before(smooth, max(0, peak - reach) + int(before[-1])), peak, on))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.gait.crossings import Onset, first_crossing, onset
+from core.gait.crossings import Onset, crossing, onset
 from core.gait.foot import FootMotion
 from core.samples import BoolArray, FloatArray
 
@@ -43,11 +43,7 @@ class SoleTravel:
     speed_share: FloatArray
 
     def is_landing(self, index: FloatArray, is_flat: BoolArray, is_straight: BoolArray, step_s: float) -> BoolArray:
-        """Whether the soles may land at these indices (k,), as they have all but ceased to travel; False where NaN.
-
-        A foot that comes down flat has no heel to land on: its sole has to stand, and to land then.
-        In a turn the way of a swing is no straight one, and its sole shows less.
-        """
+        """Whether soles may land at indices (k,): hardly travelling, flat ones at rest; False where NaN."""
         at = np.where(np.isfinite(index), index, 0.0).astype(int)
         most = np.where(is_flat, STANDING_SHARE, np.where(is_straight, LANDED_SHARE, np.inf))
         is_slow = self.speed_share[at] < most
@@ -85,7 +81,7 @@ def _landing(share: FloatArray, shock: FloatArray, fastest: int, ahead: int) -> 
     if hardest > least:
         return Onset(near + float(np.argmax(felt > max(least, SHOCK_ONSET_SHARE * hardest))), 0.0)
     soft = onset(share, fastest, len(share) - 1, TRAVEL_SHARE)
-    latest = first_crossing(share, fastest, len(share) - 1, LANDED_SHARE) + 2.0 * ahead
+    latest = crossing(share, fastest, len(share) - 1, LANDED_SHARE) + 2.0 * ahead
     return soft if soft.index < latest else Onset(latest, 2.0 * ahead)
 
 

@@ -29,16 +29,7 @@ class BothFeet:
 
 
 def parameters_of(strides: Strides, other: Strides | None) -> dict[str, FloatArray]:
-    """Time and distance of each stride (k,), named as the columns of strides.csv; NaN where not known.
-
-    A step leads from the other foot's initial contact to this foot's, which ends the stride. `clearance_m` is how high
-    the foot's sensor rises over its swing, wherever it sits; the toe comes much closer to the floor.
-
-    Returns
-    -------
-    dict
-        Name to (k,), units in the names.
-    """
+    """Compute time and distance of each stride (k,), named as in strides.csv; `clearance_m`: of the sensor."""
     return {
         "stride_time_s": strides.time_s,
         "step_time_s": _step_times(strides, other),
@@ -51,18 +42,7 @@ def parameters_of(strides: Strides, other: Strides | None) -> dict[str, FloatArr
 
 
 def mean_and_sd(values: FloatArray) -> MeanAndSd:
-    """Mean and standard deviation of the finite values.
-
-    Parameters
-    ----------
-    values : (k,)
-        In any unit, NaN where not known.
-
-    Returns
-    -------
-    MeanAndSd
-        In that unit.
-    """
+    """Compute mean and standard deviation of the finite values (k,)."""
     known = values[np.isfinite(values)]
     mean = float(np.mean(known)) if len(known) else float("nan")
     sd = float(np.std(known, ddof=1)) if len(known) >= MIN_STRIDES_FOR_SD else float("nan")
@@ -70,10 +50,7 @@ def mean_and_sd(values: FloatArray) -> MeanAndSd:
 
 
 def both_feet(left: Strides, right: Strides) -> BothFeet:
-    """Over the strides used of both feet; of one foot where the other has none.
-
-    Double support is both feet's stance less a whole stride, which needs no common clock of the feet.
-    """
+    """Summarise the used strides of both feet, or of one; double support needs no common clock."""
     used = [(strides, strides.is_used) for strides in (left, right)]
     times = [float(np.mean(s.time_s[is_used])) for s, is_used in used if is_used.any()]
     speeds = np.array([mean_and_sd(s.speed_m_s[is_used]).mean for s, is_used in used])  # a shank gives none

@@ -51,21 +51,7 @@ class _Run:
 
 
 def on_stairs(feet: Sequence[FootClimbs], *, are_declared: bool) -> list[IntArray]:
-    """Which strides lead up stairs (1), down (-1), or neither (0).
-
-    Parameters
-    ----------
-    feet
-        Those that were measured in one walk, on one clock.
-    are_declared
-        Whether each stride is judged by itself: higher than any kerb, steeper than any ramp. Else only strides of a
-        flight are on stairs.
-
-    Returns
-    -------
-    list of (k,)
-        As `feet`; 0 where not known.
-    """
+    """Find strides up (1) or down (-1) stairs, else 0; `are_declared`: each by itself, not by flights."""
     if are_declared:
         return [np.sign(_steep_m(foot, _usual_low_m(foot), LEAST_CLIMB_M)).astype(np.int64) for foot in feet]
     above_m = [_above_level(foot) for foot in feet]

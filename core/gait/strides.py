@@ -108,20 +108,7 @@ def strides_of(stretches: Sequence[FootEvents]) -> Strides:
 def strides_of_feet(
     events: Mapping[Side, Sequence[FootEvents]], *, are_stairs_declared: bool = False
 ) -> dict[Side, Strides]:
-    """Strides of each foot of one walk, and which of them are on stairs.
-
-    Parameters
-    ----------
-    events
-        Of each foot, one item per stretch without gaps, in order of time; both on one clock.
-    are_stairs_declared
-        Whether each stride is to be judged by itself, as in a test on stairs; else they are where a run of steps shows.
-
-    Returns
-    -------
-    dict of Side to Strides
-        Of each foot in `events`.
-    """
+    """Give strides of each foot and which are on stairs; events per stretch, in order, on one clock."""
     columns = {side: _columns(stretches) for side, stretches in events.items()}
     climbs = [FootClimbs(c["end_s"], c["length_m"], c["climb_m"]) for c in columns.values()]
     ways = on_stairs(climbs, are_declared=are_stairs_declared)

@@ -43,18 +43,7 @@ def prosthetic_sides(patient: Patient) -> frozenset[Side]:
 def clocks_in(
     tracks: SensorTracks, recording: Recording, gait: Mapping[Side, SideGait], lags_s: Mapping[Joint, float]
 ) -> LegClocks | None:
-    """What ties the clocks of both legs in one walk; None where not both were measured.
-
-    Parameters
-    ----------
-    lags_s
-        Of each joint, as found between its two sensors.
-
-    Returns
-    -------
-    LegClocks or None
-        Times in seconds.
-    """
+    """Give what ties both legs' clocks in one walk; None where not both were measured."""
     sites = {side: site for side in gait if (site := site_of_events(tracks, recording, side)) is not None}
     if len(sites) < len(Side):
         return None
@@ -80,22 +69,7 @@ def gait_in(
     clock_offsets_s: Mapping[Side, float],
     inclinations: Mapping[Site, FloatArray],
 ) -> dict[Side, SideGait]:
-    """Both sides' gait in one walk, from the foot, else from the shank; a side with neither is missing.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        The recording's clock.
-    clock_offsets_s
-        What brings the clock of each side's sensor, `site_of_events`, to it.
-    inclinations
-        Of thighs and shanks, (n,) each, rad, forward positive; NaN where unknown.
-
-    Returns
-    -------
-    dict of Side to SideGait
-        On the recording's clock.
-    """
+    """Find both sides' gait in one walk, from the foot, else the shank; a side with neither is missing."""
     pitch_rad = {side: np.full(len(time_s), np.nan) for side in Side}
     events = {
         side: _events(tracks, recording, site, clock_offsets_s[side], time_s, pitch_rad[side])
@@ -199,18 +173,7 @@ def _later(events: FootEvents, by_s: float) -> FootEvents:
 
 
 def joint_parameters(cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:
-    """Peaks, excursions, ranges and the angle at initial contact of each stride (k,), radians or percent.
-
-    Parameters
-    ----------
-    cycles
-        Of each joint (k, 101), rad; NaN throughout where a stride is not known.
-
-    Returns
-    -------
-    dict
-        By name, as in `SideGait.parameters`.
-    """
+    """Compute peaks, excursions, ranges and contact angles per stride (k,), rad or percent, from (k, 101)."""
     parameters: dict[str, FloatArray] = {}
     for joint, windows in ((j, PEAK_WINDOWS[j.kind]) for j in cycles):
         kind, curves = joint.kind, cycles[joint]

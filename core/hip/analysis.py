@@ -35,13 +35,7 @@ NO_HIPS = HipsOfSpan({}, {})
 
 
 def find_hips(tracks: SensorTracks) -> HipsOfSpan:
-    """Clocks and headings of every recording that moves; nothing without a sensor on the pelvis.
-
-    Returns
-    -------
-    HipsOfSpan
-        Times in s, headings in rad.
-    """
+    """Find clocks and headings of every moving recording; nothing without a pelvis sensor."""
     moving = [one for one in tracks.span if one.kind is not RecordingKind.STANDING and one.holds(Site.PELVIS)]
     if not moving:
         return NO_HIPS
@@ -57,13 +51,7 @@ def find_hips(tracks: SensorTracks) -> HipsOfSpan:
 def with_hips(
     found: RecordingAnalysis, tracks: SensorTracks, recording: Recording, hips: HipsOfSpan, knees: Knees
 ) -> RecordingAnalysis:
-    """The same with what the pelvis adds; the same object without one.
-
-    Parameters
-    ----------
-    knees
-        The calibrations in force in this recording, whose axes give the thighs their frames.
-    """
+    """Add what the pelvis sensor shows; without one, the same object. Knee axes give the thighs' frames."""
     clocks = hips.clocks.get(recording.name)
     if clocks is None:
         return found

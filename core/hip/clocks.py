@@ -41,15 +41,7 @@ NO_CLOCKS = HipClocks(None, {})
 
 
 def hip_clocks(tracks: SensorTracks, recording: Recording) -> HipClocks:
-    """The clocks of one recording, from the first ten minutes; none without a pelvis sensor.
-
-    A lag is used where the clocks are not proven common and it is longer than what tissue looks like.
-
-    Returns
-    -------
-    HipClocks
-        s.
-    """
+    """Find one recording's clocks from its first ten minutes; none without a pelvis sensor."""
     found: dict[Side, ThighClock] = {}
     for side in Side:
         if tracks.is_usable(recording, Site.PELVIS, hip_of(side).distal):

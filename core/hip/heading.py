@@ -42,29 +42,16 @@ ROOM_S = 0.02
 class HipFit:
     """Pelvis and one thigh over one stretch.
 
-    Attributes
-    ----------
-    knots_rad : (k,)
-        Heading of the thigh's earth in the pelvis's, at knots evenly spread over the stretch.
-    centre_proximal_m, centre_distal_m : (3,)
-        From the joint to the sensors, in sensor axes.
-    margin
-        Cost of the best heading more than 45 deg away over that of this one.
-    disagreement
-        What the best coincidence leaves, against all that both sensors feel: 0 one joint, 1 none.
-    sd_rad
-        Of the heading.
-    moving_s
-        How long they moved.
+    `centre_proximal_m`, `centre_distal_m`: (3,): from the joint to the sensors, in sensor axes.
     """
 
-    knots_rad: FloatArray
+    knots_rad: FloatArray  # (k,): heading of the thigh's earth in the pelvis's, at knots evenly spread over the stretch
     centre_proximal_m: FloatArray
     centre_distal_m: FloatArray
-    margin: float
-    disagreement: float
-    sd_rad: float
-    moving_s: float
+    margin: float  # cost of the best heading more than 45 deg away over that of this one
+    disagreement: float  # what the best coincidence leaves, against all that both sensors feel: 0 one joint, 1 none
+    sd_rad: float  # of the heading
+    moving_s: float  # how long they moved
 
     def heading(self, pair: Pair) -> FloatArray:
         """The heading (n,) at every sample of the pair that was fitted, rad."""
@@ -82,13 +69,7 @@ class Forces:
 
 
 def forces_of(pair: Pair, room_s: float = ROOM_S) -> Forces | None:
-    """The forces of one stretch while it moves; None where it hardly does.
-
-    Parameters
-    ----------
-    room_s
-        How much earlier and later the thigh has to have samples as well.
-    """
+    """Give a stretch's forces while it moves, None if hardly; `room_s`: margin of thigh samples."""
     index = moving_indices(pair)
     step = max(1, round(1 / (SAMPLES_PER_S * pair.step_s)), -(-len(index) // MOST_SAMPLES))
     index = index[::step]
@@ -121,13 +102,7 @@ def fit_hip(pair: Pair) -> HipFit | None:
 
 
 def scan_heading(forces: Forces) -> tuple[float, float]:
-    """The constant heading under which both coincide best in the first minute, and its margin over the best rival.
-
-    Returns
-    -------
-    float and float
-        rad; the cost of the best heading more than 45 deg away over that of the best, without unit.
-    """
+    """Scan constant headings over the first minute; give the best, rad, and the rival's cost over its cost."""
     time_s = forces.data.time_s
     first = np.flatnonzero(time_s <= time_s[0] + SCANNED_S)
     some = first[:: max(1, len(first) // SCANNED_SAMPLES)]
@@ -149,18 +124,7 @@ def scan_heading(forces: Forces) -> tuple[float, float]:
 
 
 def fit_knots(forces: Forces, knots_rad: FloatArray, steps: int = STEPS) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Headings at the knots together with centres and biases, by Gauss-Newton under a robust loss.
-
-    Parameters
-    ----------
-    knots_rad : (k,)
-        Where to start.
-
-    Returns
-    -------
-    (k,), (12,) and (3, n)
-        Knots in rad; centres (m) and biases (m/s2); what is left, m/s2.
-    """
+    """Fit heading knots (k,), centres and biases (12,) by robust Gauss-Newton; residuals (3, n), m/s2."""
     data, n = forces.data, len(forces.data)
     share = _shares(data)
     prior_x = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6) * SCALE_M_S2**2
@@ -197,22 +161,6 @@ def fit_knots(forces: Forces, knots_rad: FloatArray, steps: int = STEPS) -> tupl
             break
     design = force_design(forces.terms_1, forces.terms_2, data.heading(knots_rad)[None])[0]
     return knots_rad, unknowns, design[12] - np.tensordot(unknowns, design[:12], 1)
-
-
-def mean_cost(error: FloatArray) -> float:
-    """Mean robust loss of what is left.
-
-    Parameters
-    ----------
-    error : (3, n)
-        m/s2.
-
-    Returns
-    -------
-    float
-        Without unit.
-    """
-    return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=0) / SCALE_M_S2**2) - 1))
 
 
 def _shares(data: Datasets) -> FloatArray:

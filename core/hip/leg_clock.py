@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibration.coincidence import distal_terms
-from core.hip.heading import Forces, fit_knots, forces_of, mean_cost, scan_heading
+from core.calibration.coincidence import distal_terms, mean_cost
+from core.hip.heading import Forces, fit_knots, forces_of, scan_heading
 from core.hip.results import ClockStatus, LegClock
 from core.samples import FloatArray
 from core.signal.pair import Pair
@@ -35,13 +35,7 @@ class ThighClock:
 
 
 def thigh_clock(pair: Pair) -> ThighClock | None:
-    """The lag of one thigh in its longest stretch; None where it hardly moves.
-
-    Returns
-    -------
-    ThighClock or None
-        s.
-    """
+    """Find the lag of one thigh in its longest stretch; None where it hardly moves."""
     forces = forces_of(pair, SEARCH_S)
     if forces is None:
         return None
@@ -63,13 +57,7 @@ def thigh_clock(pair: Pair) -> ThighClock | None:
 
 
 def leg_clock(left: ThighClock, right: ThighClock, is_proven: bool) -> LegClock:
-    """The offset of both legs' clocks by their thighs', and whether it may be used.
-
-    Parameters
-    ----------
-    is_proven
-        The session states, or the stamps prove, that both legs share one clock; then nothing is moved.
-    """
+    """Give the legs' clock offset by their thighs, and its use: nothing is moved where `is_proven`."""
     offset_s = left.lag_s - right.lag_s
     moving_s = min(left.moving_s, right.moving_s)
     if is_proven:

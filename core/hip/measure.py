@@ -61,13 +61,7 @@ def is_by_cardan_angles(fit: HipFit) -> bool:
 
 
 def fits_of(tracks: SensorTracks, recording: Recording, clocks: HipClocks, side: Side) -> list[HipFit | None]:
-    """The fits of one hip's stretches in the first block.
-
-    Returns
-    -------
-    list of HipFit or None
-        As many as `pairs_of` gives pairs; None where one hardly moves.
-    """
+    """Give a hip's fits in the first block, one per pair of `pairs_of`; None where it hardly moves."""
     if not tracks.is_usable(recording, Site.PELVIS, hip_of(side).distal):
         return []
     block = tracks.blocks(recording)[0]
@@ -81,11 +75,7 @@ def frames_of(
     clocks: Mapping[str, HipClocks],
     fits: Mapping[tuple[str, Side], list[HipFit | None]],
 ) -> HipFrames | None:
-    """The frames in force in one recording; None without standing, a knee or a heading that can be trusted.
-
-    A thigh's y is its knee's axis made level. The pelvis's is the mean of both, seen over the walks, of the recording's
-    span; without walks over the free motions.
-    """
+    """Give one recording's frames by its knees' axes; None without standing, knee or certain heading."""
     thighs: dict[Side, FloatArray] = {}
     seen: list[FloatArray] = []
     up_pelvis, standing_from = None, ""
@@ -142,18 +132,7 @@ def measure_hips(
     fits: Mapping[tuple[str, Side], list[HipFit | None]],
     time_s: FloatArray,
 ) -> HipsAndPelvis:
-    """Hips and pelvis at the stamps `time_s` (n,), the recording's clock.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Ascending.
-
-    Returns
-    -------
-    HipsAndPelvis
-        rad from standing; NaN where unknown.
-    """
+    """Measure hips and pelvis at ascending stamps (n,), rad from standing; NaN: unknown."""
     worn = [side for side in frames.thighs if tracks.is_usable(recording, Site.PELVIS, hip_of(side).distal)]
     from_pelvis_s = clocks.from_pelvis_s(worn[0]) if worn else 0.0  # the first thigh gives the recording its clock
     hips = {}
@@ -210,20 +189,7 @@ def _hip(
 
 
 def with_sd(flexion_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The flexion whose median is within half a turn of standing, and how sure it is.
-
-    The sd is 2 deg and a tenth of the distance from the median, and 4 deg more beyond 80 deg.
-
-    Parameters
-    ----------
-    flexion_rad : (n,)
-        Up to whole turns; NaN where unknown.
-
-    Returns
-    -------
-    (n,) and (n,)
-        rad, and its sd in rad; NaN where unknown.
-    """
+    """Bring flexion (n,) within half a turn of standing; sd 2 deg and 10 % from the median, 4 more over 80."""
     received = flexion_rad[np.isfinite(flexion_rad)]
     median = float(np.median(received)) if len(received) else 0.0
     flexion_rad = flexion_rad - 2 * np.pi * np.round(median / (2 * np.pi))

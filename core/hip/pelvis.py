@@ -22,20 +22,7 @@ Figure = Callable[[FloatArray], np.floating]
 
 
 def turns_of(time_s: FloatArray, heading_rad: FloatArray) -> tuple[PelvisTurn, ...]:
-    """Turns of the body: the rate about the vertical, below 1 Hz, stays over 15 deg/s for 45 deg and more.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Ascending.
-    heading_rad : (n,)
-        Of the pelvis, to the left, without jumps; NaN where unknown.
-
-    Returns
-    -------
-    tuple of PelvisTurn
-        In order of time, angles in rad, to the left positive.
-    """
+    """Find body turns: rate about the vertical below 1 Hz over 15 deg/s for 45 deg and more."""
     received = np.flatnonzero(np.isfinite(heading_rad))
     if len(received) < 3:
         return ()
@@ -56,19 +43,7 @@ def turns_of(time_s: FloatArray, heading_rad: FloatArray) -> tuple[PelvisTurn, .
 def rotation_of(
     time_s: FloatArray, heading_rad: FloatArray, turns: tuple[PelvisTurn, ...], stride_s: float
 ) -> FloatArray:
-    """Heading of the pelvis against its mean over two strides (n,), rad to the left; NaN within a stride of a turn.
-
-    Parameters
-    ----------
-    time_s, heading_rad : (n,)
-    stride_s
-        The usual stride time, NaN without strides: then all is NaN.
-
-    Returns
-    -------
-    (n,)
-        rad.
-    """
+    """Give pelvis heading against its two-stride mean (n,), rad to the left; NaN near turns, or no strides."""
     rotation = np.full(len(time_s), np.nan)
     received = np.flatnonzero(np.isfinite(heading_rad))
     if not np.isfinite(stride_s) or len(received) < 3:
@@ -84,19 +59,7 @@ def rotation_of(
 
 
 def hip_parameters(strides: Strides, time_s: FloatArray, hip: HipAngle) -> dict[str, FloatArray]:
-    """Range and peaks of one hip in each stride of its leg, (k,) each, in flexion and in abduction.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        The recording's clock.
-
-    Returns
-    -------
-    dict
-        rad from standing, named as in strides.csv; extension is positive behind, adduction towards the other leg; NaN
-        where a sample is missing.
-    """
+    """Compute a hip's range and peaks per stride, (k,) rad from standing; extension is positive behind."""
     most, least = (_of_strides(strides, time_s, hip.angle_rad, of) for of in (np.max, np.min))
     outwards, inwards = (_of_strides(strides, time_s, hip.abduction_rad, of) for of in (np.max, np.min))
     return {
@@ -110,19 +73,7 @@ def hip_parameters(strides: Strides, time_s: FloatArray, hip: HipAngle) -> dict[
 
 
 def pelvis_parameters(strides: Strides, time_s: FloatArray, pelvis: PelvisAngles, side: Side) -> dict[str, FloatArray]:
-    """Ranges, mean tilt, and how far the pelvis drops in the swing, of each stride of one leg, (k,) each.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        The recording's clock.
-
-    Returns
-    -------
-    dict
-        rad; the drop and the lean from standing, the drop positive where the swinging side is the lower one, the lean
-        positive forward.
-    """
+    """Compute pelvis ranges, tilt and drop per stride, (k,) rad; drop positive with the swing side lower."""
     obliquity, rotation = pelvis.obliquity_rad, pelvis.rotation_rad
     lowered = -obliquity if side is Side.LEFT else obliquity
     swing = _during(strides.toe_off_s, strides.end_s, time_s, lowered, np.max)

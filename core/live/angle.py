@@ -7,6 +7,7 @@ it serves for the first seconds after a gap, when both filters have just begun.
 """
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -61,6 +62,45 @@ class AngleSamples:
         return len(self.tick)
 
 
+def followed_by_beats(
+    rows: PairedSamples, per_beat: int, follow: Callable[[PairedSamples, int], tuple[FloatArray, FloatArray]]
+) -> tuple[FloatArray, FloatArray]:
+    """What `follow` gives (two of (n,)) of samples of one beat that follow each other, of all of them; NaN in gaps."""
+    beat = rows.tick // per_beat
+    is_one_piece = len(rows) > 0 and rows.tick[-1] - rows.tick[0] == len(rows) - 1 and beat[0] == beat[-1]
+    if is_one_piece and rows.is_measured.all():  # as most blocks are: quicker
+        return follow(rows, int(beat[0]))
+    angle, sd = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+    is_edge = (rows.tick[1:] - rows.tick[:-1] != 1) | (beat[1:] != beat[:-1])
+    is_edge |= rows.is_paired[1:] != rows.is_paired[:-1]
+    for a, b in pairwise([0, *(np.flatnonzero(is_edge) + 1).tolist(), len(rows)]):
+        if b > a and rows.is_paired[a]:
+            angle[a:b], sd[a:b] = follow(rows.part(slice(a, b)), int(beat[a]))
+    if not rows.is_measured.all():
+        angle[~rows.is_measured] = sd[~rows.is_measured] = np.nan
+    return angle, sd
+
+
+def start_sd_of(rows: PairedSamples) -> float:
+    """How sure the first sample's angle is: resting, where gravity shows the vertical at once, or amid a movement."""
+    signals = np.stack([rows.proximal[0], rows.distal[0]])
+    force = np.linalg.norm(signals[:, 7:10], axis=1)
+    is_resting = np.linalg.norm(signals[:, 4:7]) < MOVING_RAD_S
+    is_resting &= bool(np.all((force > RESTING_FORCE_M_S2[0]) & (force < RESTING_FORCE_M_S2[1])))
+    return float(START_RESTING_RAD if is_resting else START_MOVING_RAD)
+
+
+def start_sd_at(time_s: FloatArray, started_s: float, sd_rad: float) -> FloatArray:
+    """What is left (n,) of the start's uncertainty, and what stays."""
+    left: FloatArray = sd_rad * np.exp((started_s - time_s) / SETTLES_S)
+    return np.hypot(left, SETTLED_RAD)
+
+
+def still_ahead(time_s: FloatArray, since_s: float, ahead_rad: float) -> FloatArray:
+    """How far (n,) what is shown is still ahead on the way from one calibration to the next."""
+    return np.asarray(0.5 * ahead_rad * (1 + np.cos(np.pi * np.minimum((time_s - since_s) / BLEND_S, 1.0))))
+
+
 class LiveAngle:
     """The angle of one joint, with the calibration in force.
 
@@ -111,10 +151,7 @@ class LiveAngle:
         return not calibration.joint.is_knee and calibration.axis_source is AxisSource.FREE_MOTION
 
     def recalibrate(self, calibration: JointCalibration) -> None:
-        """Go over to another calibration of the same joint, from the next sample on.
-
-        The angle goes on from where it is and reaches what the new calibration gives after BLEND_S, on half a cosine.
-        """
+        """Blend to another calibration of the joint within BLEND_S, on half a cosine, from the next sample on."""
         old, new = self._geometry, JointGeometry(calibration)
         if (new.j1 @ old.j1) * (new.j2 @ old.j2) < 0:  # paired the other way round: so are the headings
             self._heading.turn(np.pi)
@@ -125,23 +162,7 @@ class LiveAngle:
     def update(self, proximal: OrientedSamples, distal: OrientedSamples) -> AngleSamples:
         """Take what is new of both sensors, in order; returns the angle as far as both of them have reached."""
         self.paired = rows = self._pairing.update(proximal, distal)
-        beat = rows.tick // self._per_beat
-        if (
-            len(rows)
-            and rows.tick[-1] - rows.tick[0] == len(rows) - 1
-            and beat[0] == beat[-1]
-            and rows.is_measured.all()
-        ):
-            angle, sd = self._follow(rows, int(beat[0]))  # as most blocks are: quicker
-            return AngleSamples(rows.tick, rows.time_s + self._clock_offset_s, angle, sd)
-        angle, sd = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
-        is_edge = (rows.tick[1:] - rows.tick[:-1] != 1) | (beat[1:] != beat[:-1])
-        is_edge |= rows.is_paired[1:] != rows.is_paired[:-1]
-        for a, b in pairwise([0, *(np.flatnonzero(is_edge) + 1).tolist(), len(rows)]):
-            if b > a and rows.is_paired[a]:
-                angle[a:b], sd[a:b] = self._follow(rows.part(slice(a, b)), int(beat[a]))
-        if not rows.is_measured.all():
-            angle[~rows.is_measured] = sd[~rows.is_measured] = np.nan
+        angle, sd = followed_by_beats(rows, self._per_beat, self._follow)
         return AngleSamples(rows.tick, rows.time_s + self._clock_offset_s, angle, sd)
 
     def _follow(self, rows: PairedSamples, beat: int) -> tuple[FloatArray, FloatArray]:
@@ -150,7 +171,7 @@ class LiveAngle:
         is_new_stretch, is_new_beat = rows.tick[0] != self._next, beat != self._beat
         if is_new_stretch:
             self._start(rows, frames)
-        start_sd = self._start_sd(time_s)
+        start_sd = start_sd_at(time_s, self._started_s, self._start_sd_rad)
         if is_new_beat and not is_new_stretch:
             self._look(float(start_sd[0]))
         self._beat, self._next = beat, int(rows.tick[-1]) + 1
@@ -179,20 +200,10 @@ class LiveAngle:
 
     def _start(self, rows: PairedSamples, frames: JointFrames) -> None:
         """A stretch begins: resting, where gravity shows the vertical at once, or amid a movement."""
-        signals = np.stack([rows.proximal[0], rows.distal[0]])
-        force = np.linalg.norm(signals[:, 7:10], axis=1)
-        is_resting = np.linalg.norm(signals[:, 4:7]) < MOVING_RAD_S
-        is_resting &= bool(np.all((force > RESTING_FORCE_M_S2[0]) & (force < RESTING_FORCE_M_S2[1])))
-        self._started_s = float(rows.time_s[0])
-        self._start_sd_rad = START_RESTING_RAD if is_resting else START_MOVING_RAD
+        self._started_s, self._start_sd_rad = float(rows.time_s[0]), start_sd_of(rows)
         self._heading.restart(self._started_s, float(np.angle(frames.heading_seen[0])), 2 * self._start_sd_rad)
         self._integral, self._seen = None, []
         self._last, self._is_switched, self._blend = None, False, None
-
-    def _start_sd(self, time_s: FloatArray) -> FloatArray:
-        """What is left (n,) of the start's uncertainty, and what stays."""
-        left: FloatArray = self._start_sd_rad * np.exp((self._started_s - time_s) / SETTLES_S)
-        return np.hypot(left, SETTLED_RAD)
 
     def _heading_part(self, frames: JointFrames) -> FloatArray:
         """What the heading's uncertainty makes of the angle's (n,): the more, the steeper the axis is."""
@@ -218,7 +229,7 @@ class LiveAngle:
         self, time_s: FloatArray, angle: FloatArray, sd: FloatArray, since_s: float, ahead_rad: float
     ) -> tuple[FloatArray, FloatArray]:
         """On the way from one calibration to the next, which is part of the uncertainty."""
-        ahead = 0.5 * ahead_rad * (1 + np.cos(np.pi * np.minimum((time_s - since_s) / BLEND_S, 1.0)))
+        ahead = still_ahead(time_s, since_s, ahead_rad)
         if time_s[-1] > since_s + BLEND_S:
             self._blend = None
         return wrap(angle + ahead), np.hypot(sd, ahead)

@@ -87,13 +87,7 @@ class SlowDrift:
         self._time_s, self._angle = time_s, self._angle + since_s * self._slope
 
     def look(self, seen: complex, time_s: float, duration_s: float, unsure_rad: float = 0.0) -> None:
-        """Take the mean of what was seen around `time_s` for `duration_s`.
-
-        Parameters
-        ----------
-        unsure_rad
-            Standard deviation of what turns this look and those beside it alike.
-        """
+        """Take the mean observation around `time_s`; `unsure_rad`: sd common to this and adjacent ones."""
         self._advance(time_s)
         if self._is_unknown:
             self._first.append(seen)

@@ -45,14 +45,9 @@ SHARED = 0.25  # of the least certain direction
 class Required:
     """What closes a joint, what no motion can reduce, and how far its sensors move against their segments.
 
-    Attributes
-    ----------
-    tilt_rad, shift_m
-        In step with the motion, so that no length of it averages them out.
-    wobble
-        Share of a segment's rate that its sensor may turn beside it; a relative rate below shows no joint.
-    is_hinge
-        One axis by construction: its floors grow with what the sensors turn across it, and no centre shows along it.
+    `tilt_rad`, `shift_m`: in step with the motion, so that no length of it averages them out.
+    `is_hinge`: one axis by construction: its floors grow with what the sensors turn across it, and no centre shows
+    along it.
     """
 
     axis_rad: float
@@ -61,7 +56,7 @@ class Required:
     centre_floor_m: float
     tilt_rad: float
     shift_m: float
-    wobble: float
+    wobble: float  # share of a segment's rate that its sensor may turn beside it; a relative rate below shows no joint
     is_hinge: bool
 
 
@@ -106,39 +101,26 @@ class Missing:
 class ExcitationState:
     """What the motion so far would give.
 
-    Attributes
-    ----------
-    axis_sd_rad, centre_sd_m
-        What motion can still reduce: for the gauge. The centre's along the least certain observable direction.
-    axis_sd_with_floor_rad, centre_sd_with_floor_m
-        How far the calibration may be from the truth.
-    sign_margin
-        Cost of the best rival over the best hypothesis; 1 while nothing is known.
-    wanting
-        The worse of both gauges' figures over what closes it.
-    is_closed
-        Good enough.
-    is_plateau
-        Not closed, and ten seconds of movement in, four more brought less than a tenth: as good as this motion gives.
-    trend
-        Share of what is wanting that the last four seconds of movement took away; negative where it grew, 1 before.
-    missing
-        None once closed.
-    moved_s
-        How much movement has been used.
+    `axis_sd_rad`, `centre_sd_m`: what motion can still reduce: for the gauge. The centre's along the least certain
+    observable direction.
+    `axis_sd_with_floor_rad`, `centre_sd_with_floor_m`: how far the calibration may be from the truth.
+    `is_plateau`: not closed, and ten seconds of movement in, four more brought less than a tenth: as good as this
+    motion gives.
+    `trend`: share of what is wanting that the last four seconds of movement took away; negative where it grew, 1
+    before.
     """
 
     axis_sd_rad: float
     centre_sd_m: float
     axis_sd_with_floor_rad: float
     centre_sd_with_floor_m: float
-    sign_margin: float
-    wanting: float
-    is_closed: bool
+    sign_margin: float  # cost of the best rival over the best hypothesis; 1 while nothing is known
+    wanting: float  # the worse of both gauges' figures over what closes it
+    is_closed: bool  # good enough
     is_plateau: bool
     trend: float
-    missing: Missing | None
-    moved_s: float
+    missing: Missing | None  # None once closed
+    moved_s: float  # how much movement has been used
 
 
 class Excitation:
@@ -156,11 +138,7 @@ class Excitation:
         self._is_closed = False
         shank = joint.distal if joint.is_knee else joint.proximal
         self._missing = Missing(shank, Movement.CIRCLE)  # which moves what lies above and below it, too
-        self._state = self._judged()
-
-    @property
-    def state(self) -> ExcitationState:
-        return self._state
+        self.state = self._judged()
 
     @property
     def heading_rad(self) -> float | None:
@@ -171,15 +149,15 @@ class Excitation:
         """Take samples of both sensors, any number of either; the state after the last whole tenth of a second."""
         for _ in self.states(proximal, distal):
             pass
-        return self._state
+        return self.state
 
     def states(self, proximal: OrientedSamples, distal: OrientedSamples) -> Iterator[ExcitationState]:
         """The same, telling the state after every tenth of a second."""
         for is_new in self._collector.feed(proximal, distal):
             if is_new:
                 is_refitted = self._add()
-                self._state = self._judged(is_refitted)
-            yield self._state
+                self.state = self._judged(is_refitted)
+            yield self.state
 
     def _add(self) -> bool:
         """Take the newest set; whether the best hypothesis was determined again."""

@@ -39,15 +39,7 @@ class FootPitch:
     def update(
         self, time_s: FloatArray, samples: OrientedSamples, events: Iterable[LiveEvent], axis: FloatArray | None
     ) -> tuple[FootStrike, ...]:
-        """Take what is new of the foot, and what its samples showed.
-
-        Parameters
-        ----------
-        time_s : (n,)
-            Of the samples, on the clock of the events.
-        axis : (3,) or None
-            About which the foot pitches, in sensor axes, such that a positive rate lifts the toes; None: not known.
-        """
+        """Take new samples at `time_s` (n,), the events' clock; `axis` (3,) lifts the toes, None: unknown."""
         self._time_s = np.concatenate([self._time_s, time_s])
         self._up = np.concatenate([self._up, _up_in_sensor(samples.q_earth_from_sensor)])
         self._speed2 = np.concatenate([self._speed2, np.sum(samples.gyr_rad_s**2, axis=1)])

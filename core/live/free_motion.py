@@ -22,13 +22,9 @@ LOOK_S = 5.0  # how often a lag is looked for
 class FreeMotionState:
     """Excitation and lag of every joint whose two sensors are worn; a lag appears once it has been looked for.
 
-    Attributes
-    ----------
-    weakest
-        The joint whose `missing` motion helps most now; None when all are as good as they get.
-    hips
-        What is known of the heading of each hip whose sensors are worn. Walking shows it as well, so nothing waits for
-        it.
+    `weakest`: the joint whose `missing` motion helps most now; None when all are as good as they get.
+    `hips`: what is known of the heading of each hip whose sensors are worn. Walking shows it as well, so nothing waits
+    for it.
     """
 
     joints: Mapping[Joint, ExcitationState] = field(default_factory=dict)
@@ -73,13 +69,7 @@ class LiveFreeMotion:
         self._hips = LiveHips(sensors)
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> FreeMotionState:
-        """Take new samples of some or all sites.
-
-        Raises
-        ------
-        KeyError
-            A site that was not announced.
-        """
+        """Take new samples of some or all sites; KeyError for a site not announced."""
         turned = self._sensors.update(blocks)
         for joint, motion in self._joints.items():
             motion.update(turned.get(joint.proximal, NOTHING), turned.get(joint.distal, NOTHING))

@@ -27,40 +27,25 @@ NEAR_RAD = np.deg2rad(30.0)  # within, headings are distinguished by the informa
 class HeadingProfile:
     """The best hypothesis, and how far it is in doubt.
 
-    Attributes
-    ----------
-    heading_rad
-        Of the distal earth in the proximal one.
-    axis_1, axis_2 : (3,)
-        In sensor axes.
-    across : (6, 6)
-        Takes from two vectors, one in each sensor, what lies along the axes.
-    spread_1_rad, spread_2_rad
-        Root mean square of the angles to the axes that other headings give, each weighted by how well it fits.
-    margin
-        Cost of the best rival, a heading elsewhere or the opposite pairing, over the cost of the best.
-    bending_rad_s
-        Root mean square of the relative rate at the heading that leaves least of it: nothing in a joint held stiff.
+    `axis_1`, `axis_2`: (3,): in sensor axes.
+    `spread_1_rad`, `spread_2_rad`: root mean square of the angles to the axes that other headings give, each weighted
+    by how well it fits.
+    `bending_rad_s`: root mean square of the relative rate at the heading that leaves least of it: nothing in a joint
+    held stiff.
     """
 
-    heading_rad: float
+    heading_rad: float  # of the distal earth in the proximal one
     axis_1: FloatArray
     axis_2: FloatArray
-    across: FloatArray
+    across: FloatArray  # (6, 6): takes from two vectors, one in each sensor, what lies along the axes
     spread_1_rad: float
     spread_2_rad: float
-    margin: float
+    margin: float  # cost of the best rival, a heading elsewhere or the opposite pairing, over the cost of the best
     bending_rad_s: float
 
 
 def profile_headings(sets: Sets, lag_s: float) -> HeadingProfile:
-    """All headings tried on all sets, with the distal sensor's lag corrected.
-
-    Returns
-    -------
-    HeadingProfile
-        Angles in rad, axes in sensor axes.
-    """
+    """Try all headings on all sets, the distal lag corrected."""
     rate_1, rate_2 = sets.rates_in_earth(lag_s)
     to_1, to_2 = sets.earth_from_1, sets.earth_from_2 @ (np.eye(3) - lag_s * cross_matrix(sets.g2))
     scatter_1 = _scatter(to_1, rate_2, -rate_1, 1.0)

@@ -7,7 +7,6 @@ where the hip is turned out as well. What is shown goes over from one to the oth
 from collections import deque
 from collections.abc import Iterable
 from copy import copy
-from itertools import pairwise
 
 import numpy as np
 
@@ -16,19 +15,20 @@ from core.hip.results import HipIdentification
 from core.live.angle import (
     BLEND_S,
     MAX_START_RAD,
-    RESTING_FORCE_M_S2,
     SETTLED_RAD,
     SETTLES_S,
     START_MOVING_RAD,
-    START_RESTING_RAD,
     AngleSamples,
+    followed_by_beats,
+    start_sd_at,
+    start_sd_of,
+    still_ahead,
 )
 from core.live.hip_heading import HipHeadingState
 from core.live.joint_frames import orientation_map
 from core.live.orientation import OrientedSamples
 from core.live.pairing import PairedSamples, Pairing
 from core.samples import ComplexArray, FloatArray
-from core.signal.pair import MOVING_RAD_S
 from core.signal.rotations import wrap
 
 BEAT_S = 0.5  # heading and posture are looked at once in this time, on the pelvis's grid
@@ -78,23 +78,10 @@ class LiveHip:
         self._coming.extend(states)
 
     def update(self, pelvis: OrientedSamples, thigh: OrientedSamples) -> AngleSamples:
-        """Take what is new of both sensors, in order; returns the angle as far as both of them have reached.
-
-        Its stamps are on the thigh's clock.
-        """
+        """Take new samples of both sensors in order; give the angle up to both, on the thigh's clock."""
         rows = self._pairing.update(pelvis, thigh)
-        beat, time_s = rows.tick // self._per_beat, rows.time_s - self._pairing.lag_s
-        is_one_piece = len(rows) > 0 and rows.tick[-1] - rows.tick[0] == len(rows) - 1 and beat[0] == beat[-1]
-        if is_one_piece and rows.is_measured.all():  # as most blocks are: quicker
-            return AngleSamples(rows.tick, time_s, *self._follow(rows, int(beat[0])))
-        angle, sd = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
-        is_edge = (np.diff(rows.tick) != 1) | (np.diff(beat) != 0) | (np.diff(rows.is_paired) != 0)
-        for a, b in pairwise([0, *(np.flatnonzero(is_edge) + 1).tolist(), len(rows)]):
-            if b > a and rows.is_paired[a]:
-                angle[a:b], sd[a:b] = self._follow(rows.part(slice(a, b)), int(beat[a]))
-        if not rows.is_measured.all():
-            angle[~rows.is_measured] = sd[~rows.is_measured] = np.nan
-        return AngleSamples(rows.tick, time_s, angle, sd)
+        angle, sd = followed_by_beats(rows, self._per_beat, self._follow)
+        return AngleSamples(rows.tick, rows.time_s - self._pairing.lag_s, angle, sd)
 
     def _follow(self, rows: PairedSamples, beat: int) -> tuple[FloatArray, FloatArray]:
         """Angle and standard deviation (n,) of samples of one beat that follow each other."""
@@ -112,7 +99,7 @@ class LiveHip:
         sd = SD_RAD + SD_SHARE * np.abs(angle - usual) + DEEP_SD_RAD * (angle > DEEP_RAD)
         if rows.time_s[0] > self._started_s + SETTLED_AFTER * SETTLES_S:
             return angle, np.sqrt(sd**2 + (SETTLED_RAD**2 + ahead**2))
-        start_sd = np.hypot(self._start_sd_rad * np.exp((self._started_s - rows.time_s) / SETTLES_S), SETTLED_RAD)
+        start_sd = start_sd_at(rows.time_s, self._started_s, self._start_sd_rad)
         sd = np.sqrt(sd**2 + start_sd**2 + ahead**2)
         is_unsure = start_sd > MAX_START_RAD
         angle[is_unsure] = sd[is_unsure] = np.nan
@@ -120,12 +107,7 @@ class LiveHip:
 
     def _start(self, rows: PairedSamples) -> None:
         """A stretch begins: resting, where gravity shows the vertical at once, or amid a movement."""
-        signals = np.stack([rows.proximal[0], rows.distal[0]])
-        force = np.linalg.norm(signals[:, 7:10], axis=1)
-        is_resting = np.linalg.norm(signals[:, 4:7]) < MOVING_RAD_S
-        is_resting &= bool(np.all((force > RESTING_FORCE_M_S2[0]) & (force < RESTING_FORCE_M_S2[1])))
-        self._started_s = float(rows.time_s[0])
-        self._start_sd_rad = START_RESTING_RAD if is_resting else START_MOVING_RAD
+        self._started_s, self._start_sd_rad = float(rows.time_s[0]), start_sd_of(rows)
         while self._coming and self._coming[0].until_s < self._started_s:
             self._coming.popleft()  # of orientations that are no more
         self._required = self._required.turned(None)
@@ -155,7 +137,7 @@ class LiveHip:
         if time_s[0] > since_s + BLEND_S:
             self._blend = None
             return 0.0
-        return np.asarray(0.5 * ahead_rad * (1 + np.cos(np.pi * np.minimum((time_s - since_s) / BLEND_S, 1.0))))
+        return still_ahead(time_s, since_s, ahead_rad)
 
 
 class _Form:

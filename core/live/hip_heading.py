@@ -31,29 +31,15 @@ GRAVITY_M_S2_UP = np.array([[0.0], [0.0], [GRAVITY_M_S2]])
 
 @dataclass(frozen=True, slots=True)
 class HipHeadingState:
-    """What the movement so far shows of the heading of the thigh's earth in the pelvis's.
+    """What the movement so far shows of the heading of the thigh's earth in the pelvis's."""
 
-    Attributes
-    ----------
-    until_s
-        Of the last sample that counts.
-    margin
-        Cost of the best heading more than 45 deg away over that of this one.
-    disagreement
-        What the best coincidence leaves, against all that both sensors feel.
-    moved_s
-        Of movement, since the orientations began.
-    is_sure
-        Whether it is sure enough for Cardan angles.
-    """
-
-    until_s: float = -np.inf
+    until_s: float = -np.inf  # of the last sample that counts
     heading_rad: float = 0.0
     sd_rad: float = np.inf
-    margin: float = 1.0
-    disagreement: float = 1.0
-    moved_s: float = 0.0
-    is_sure: bool = False
+    margin: float = 1.0  # cost of the best heading more than 45 deg away over that of this one
+    disagreement: float = 1.0  # what the best coincidence leaves, against all that both sensors feel
+    moved_s: float = 0.0  # of movement, since the orientations began
+    is_sure: bool = False  # whether it is sure enough for Cardan angles
 
     @property
     def is_trusted(self) -> bool:

@@ -27,27 +27,13 @@ ROUNDING = 1e-6  # of the spacing
 
 @dataclass(frozen=True, slots=True)
 class FeltForces:
-    """The terms of one sensor at whole multiples of SPACING_S, low-passed; see `signal.joint_force.JointForce`.
+    """The terms of one sensor at whole multiples of SPACING_S, low-passed; see `signal.joint_force.JointForce`."""
 
-    Attributes
-    ----------
-    instant : (k,)
-        The multiples, of the clock of the joint.
-    terms : (k, 3, 7)
-        In the sensor's own earth.
-    rate_rad_s : (k,)
-        How fast the sensor turns.
-    is_clear : (k,)
-        Whether nothing was missing shortly before.
-    stretch : (k,)
-        Counts up where the orientation restarts.
-    """
-
-    instant: IntArray
-    terms: FloatArray
-    rate_rad_s: FloatArray
-    is_clear: BoolArray
-    stretch: IntArray
+    instant: IntArray  # (k,): the multiples, of the clock of the joint
+    terms: FloatArray  # (k, 3, 7): in the sensor's own earth
+    rate_rad_s: FloatArray  # (k,): how fast the sensor turns
+    is_clear: BoolArray  # (k,): whether nothing was missing shortly before
+    stretch: IntArray  # (k,): counts up where the orientation restarts
 
     def __len__(self) -> int:
         return len(self.instant)

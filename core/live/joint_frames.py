@@ -18,34 +18,12 @@ from core.signal.rotations import in_plane, joint_frame, wrap
 
 
 def frame_map(axis: FloatArray) -> ComplexArray:
-    """Matrix (4, 2) that takes orientations (n, 4) of a sensor, as rows, to u and v of its joint frame.
-
-    Parameters
-    ----------
-    axis : (3,)
-        Unit axis in sensor axes.
-
-    Returns
-    -------
-    (4, 2)
-        Complex, without unit.
-    """
+    """Give the complex matrix (4, 2) from orientations (n, 4), as rows, to u and v of the joint frame."""
     return orientation_map(np.stack([*joint_frame(axis), axis], axis=1))
 
 
 def orientation_map(frame: FloatArray) -> ComplexArray:
-    """Matrix (4, 2) that takes orientations (n, 4) of a sensor, as rows, to u and v of a frame fixed to it.
-
-    Parameters
-    ----------
-    frame : (3, 3)
-        Its axes as columns, in sensor axes.
-
-    Returns
-    -------
-    (4, 2)
-        Complex, without unit.
-    """
+    """Give the complex matrix (4, 2) from orientations (n, 4) to u and v of a frame (3, 3) of columns."""
     w, x, y, z = Rotation.from_matrix(frame).as_quat(scalar_first=True)
     product = np.array([[w, x, y, z], [-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]])  # of 1, i, j, k with it
     return np.stack([product[:, 0] + 1j * product[:, 3], product[:, 1] + 1j * product[:, 2]], axis=1)
@@ -62,10 +40,7 @@ class JointFrames:
 
     @property
     def heading_seen(self) -> ComplexArray:
-        """Numbers (n,) along the heading of the distal earth in the proximal one under which the axes are parallel.
-
-        As long as the product of both axes' horizontal parts, which is what j1 - R12 j2 weighs.
-        """
+        """Give (n,) along the heading of parallel axes, of length the product of their horizontal parts."""
         return np.asarray(4 * self.u1 * self.v1 * np.conj(self.u2 * self.v2))
 
     def part(self, which: slice) -> "JointFrames":
@@ -83,13 +58,7 @@ class JointFrames:
         return 2 * np.angle(about)
 
     def off_axis_rate(self, rate_1: FloatArray, rate_2: FloatArray, heading_rad: FloatArray) -> ComplexArray:
-        """Relative rate (n,) across the axis, rad/s, as complex numbers in the proximal joint frame.
-
-        Parameters
-        ----------
-        rate_1, rate_2 : (n, 3)
-            Of each sensor in its own joint frame.
-        """
+        """Give the relative rate across the axis (n,), rad/s, complex in the proximal joint frame."""
         half = np.exp(0.5j * heading_rad)
         u2, v2 = half * self.u2, half * self.v2
         u, v = np.conj(self.u1) * u2 + self.v1 * np.conj(v2), np.conj(self.u1) * v2 - self.v1 * np.conj(u2)

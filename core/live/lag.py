@@ -49,13 +49,7 @@ class LiveLag:
         self._new[1].append(distal)
 
     def look(self, heading_rad: float) -> LagState | None:
-        """What the samples show; None where there was too little movement.
-
-        Parameters
-        ----------
-        heading_rad
-            Of the distal earth in the proximal one.
-        """
+        """Give what samples show at the heading of the distal earth; None for too little movement."""
         new = self._pairing.update(joined(self._new[0]), joined(self._new[1]))
         self._new = [], []
         if len(new):

@@ -23,13 +23,9 @@ BIAS_SD_DEG_S = 0.5
 class OrientedSamples:
     """Even samples whose rates are free of bias and stand for the instants of their stamps, and their orientation.
 
-    Attributes
-    ----------
-    tick, time_s, is_measured : (n,)
-        As in `EvenSamples`: where ticks jump a new stretch begins.
-    signals : (n, 10)
-        Orientation (4), earth from sensor, scalar first, z up, without jumps between q and -q, its heading starting
-        anywhere with each stretch; angular rate (3); specific force (3).
+    `tick`, `time_s`, `is_measured`: (n,): as in `EvenSamples`: where ticks jump a new stretch begins.
+    `signals`: (n, 10): orientation (4), earth from sensor, scalar first, z up, without jumps between q and -q, its
+    heading starting anywhere with each stretch; angular rate (3); specific force (3).
     """
 
     tick: IntArray

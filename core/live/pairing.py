@@ -108,23 +108,8 @@ class Pairing:
             is_between = (at < last - 1) & (first == left - 1) & (final == left + 2)
             is_paired = np.where(is_whole, two.tick[at] == left, is_between)
             u = np.where(is_whole, 0.0, share)
-            distal = np.einsum("nk,nki->ni", cubic_weights(u), two.signals.take(stencil, axis=0, mode="clip"))
+            weights = u[:, None] ** POWERS @ CUBIC  # (n, 4), as `at_positions` has them offline
+            distal = np.einsum("nk,nki->ni", weights, two.signals.take(stencil, axis=0, mode="clip"))
             nearest = np.minimum(at + (u > 0.5), last)
         is_measured = is_paired & one.is_measured & two.is_measured[nearest]
         return PairedSamples(one.tick, one.time_s, one.signals, distal, is_paired, is_measured), used
-
-
-def cubic_weights(share: FloatArray) -> FloatArray:
-    """Weights (n, 4) of the samples around a place that lies `share` (n,) after the second: `at_positions` offline.
-
-    Parameters
-    ----------
-    share : (n,)
-        0 to 1 of the interval between the second and the third sample.
-
-    Returns
-    -------
-    (n, 4)
-        Rows sum to 1.
-    """
-    return share[:, None] ** POWERS @ CUBIC

@@ -58,13 +58,7 @@ _SHAPES = ((3,), (3,), (3,), (2,), (3,), (3, 3), (3, 3), (3, 3, 3), (3, 3), (3, 
 
 
 def parabola(lag_s: float) -> tuple[FloatArray, FloatArray]:
-    """Shares (3,) of the three instants in what was `lag_s` earlier, and their slopes (3,) by the lag.
-
-    Returns
-    -------
-    (3,) and (3,)
-        Without unit, and 1/s.
-    """
+    """Give shares (3,) of the three instants `lag_s` earlier, and their slopes (3,), 1/s."""
     at = -lag_s / NODE_S
     return (
         np.array([0.5 * at * (at - 1), 1 - at**2, 0.5 * at * (at + 1)]),
@@ -88,18 +82,7 @@ _PRODUCTS_TO_MATRIX = _products_to_matrix()
 
 
 def matrices_of(q: FloatArray) -> FloatArray:
-    """Rotation matrices of quaternions of about unit length; for one, ten times as fast as SciPy.
-
-    Parameters
-    ----------
-    q : (n, 4)
-        Scalar first.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Takes vectors as the quaternion does.
-    """
+    """Give rotation matrices (n, 3, 3) of near-unit quaternions (n, 4), scalar first; for one, fast."""
     products = q[:, :, None] * (q / np.sum(q**2, axis=1, keepdims=True))[:, None, :]
     return (products.reshape(-1, 16) @ _PRODUCTS_TO_MATRIX).reshape(-1, 3, 3)
 
@@ -174,7 +157,8 @@ class SetCollector:
             self._drop_oldest()
         kept, n = self._kept, self._count
         rates = np.concatenate([g1, g2], axis=1)
-        accelerations = _angular_acceleration(rates)
+        # at the three middle nodes; Seel et al. 2014, doi 10.3390/s140406891, eq 1
+        accelerations = (rates[0:3] - 8 * rates[1:4] + 8 * rates[3:6] - rates[4:7]) / (12 * NODE_S)
         dg1, dg2 = accelerations[:, :3], accelerations[:, 3:]
         kept.g1[n], kept.g2[n], kept.dg2[n] = g1[3], g2[3], dg2[1]
         kept.effort[n] = dg1[1] @ dg1[1], dg2[1] @ dg2[1]
@@ -193,12 +177,6 @@ class SetCollector:
             values[:left] = values[DROPPED_AT_ONCE:].copy()
         self._count = left
         self._same_heading = max(self._same_heading - DROPPED_AT_ONCE, 0)
-
-
-def _angular_acceleration(rate: FloatArray) -> FloatArray:
-    """Derivatives (3, k) at the three middle nodes of rates (7, k); Seel et al. 2014, doi 10.3390/s140406891, eq 1."""
-    slopes: FloatArray = (rate[0:3] - 8 * rate[1:4] + 8 * rate[3:6] - rate[4:7]) / (12 * NODE_S)
-    return slopes
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,10 +29,7 @@ class LiveSensor:
 class LiveSensors:
     """Streams and orientations of any number of sensors, each on its own clock and grid.
 
-    Attributes
-    ----------
-    corrections
-        Of biases that the first rest has contradicted, in the order of finding.
+    `corrections`: of biases that the first rest has contradicted, in the order of finding.
     """
 
     def __init__(self, sensors: Mapping[Site, LiveSensor]) -> None:
@@ -46,13 +43,7 @@ class LiveSensors:
         self.corrections: tuple[BiasCorrection, ...] = ()
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> dict[Site, OrientedSamples]:
-        """Take new samples of some or all sites; returns what they and those before them have settled.
-
-        Raises
-        ------
-        KeyError
-            A site that was not announced.
-        """
+        """Take new samples of some or all sites; give what is settled. KeyError for a site not announced."""
         turned = {}
         for site, block in blocks.items():
             if len(block) == 0:

@@ -30,30 +30,19 @@ Sensor = TypeVar("Sensor", bound=str)
 class StandingState(Generic[Sensor]):
     """How far the standing has come.
 
-    Attributes
-    ----------
-    still_s
-        How long all sensors have given samples and been still.
-    moved
-        Sensors that moved in the last window of any; the count has restarted after them.
-    silent
-        Sensors without samples for half a second, or that repeat one value; without them nothing counts.
-    rest
-        Bias and specific force of each sensor, once all were still for the required time.
-    movement
-        Of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too little was
-        received.
-    restarts
-        How often somebody who stood has moved.
+    `silent`: sensors without samples for half a second, or that repeat one value; without them nothing counts.
+    `rest`: bias and specific force of each sensor, once all were still for the required time.
+    `movement`: of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too
+    little was received.
     """
 
-    still_s: float
+    still_s: float  # how long all sensors have given samples and been still
     required_s: float
-    moved: tuple[Sensor, ...] = ()
+    moved: tuple[Sensor, ...] = ()  # sensors that moved in the last window of any; the count has restarted after them
     silent: tuple[Sensor, ...] = ()
     rest: Mapping[Sensor, Rest] = field(default_factory=dict)
     movement: Mapping[Sensor, float] = field(default_factory=dict)
-    restarts: int = 0
+    restarts: int = 0  # how often somebody who stood has moved
 
     @property
     def is_done(self) -> bool:
@@ -77,25 +66,15 @@ class LiveStanding(Generic[Sensor]):
         self._bouts = _Bouts()
         self._rest_of = np.inf, np.inf
         self._found: Mapping[Sensor, Rest] = {}
-        self._state: StandingState[Sensor] = StandingState(0.0, required_s)
-
-    @property
-    def state(self) -> StandingState[Sensor]:
-        return self._state
+        self.state: StandingState[Sensor] = StandingState(0.0, required_s)
 
     def update(self, blocks: Mapping[Sensor, ImuBlock]) -> StandingState[Sensor]:
-        """Take new samples of some or all sensors.
-
-        Raises
-        ------
-        KeyError
-            A sensor that was not announced.
-        """
+        """Take new samples of some or all sensors; KeyError for a sensor not announced."""
         for sensor, block in blocks.items():
             for start_s, end_s in self._watches[sensor].feed(block):
                 self._bouts.add(start_s, end_s)
-        self._state = self._state_now()
-        return self._state
+        self.state = self._state_now()
+        return self.state
 
     def _state_now(self) -> StandingState[Sensor]:
         watches = self._watches
@@ -103,7 +82,7 @@ class LiveStanding(Generic[Sensor]):
         silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.received_s <= SILENT_S)
         begun_s = min((watch.begun_s for watch in watches.values()), default=np.inf)
         state = replace(
-            self._state,
+            self.state,
             movement={sensor: w.movement for sensor, w in watches.items() if np.isfinite(w.received_s)},
             restarts=self._bouts.count_after(begun_s + SAME_BOUT_S),
         )
@@ -115,7 +94,7 @@ class LiveStanding(Generic[Sensor]):
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
         still_s = until_s - since_s
-        rest = self._rest(since_s, still_s, watches) if still_s >= self._state.required_s else {}
+        rest = self._rest(since_s, still_s, watches) if still_s >= self.state.required_s else {}
         moved = tuple(sensor for sensor, watch in watches.items() if watch.is_moving)
         return replace(state, still_s=max(0.0, still_s), moved=moved, silent=silent, rest=rest)
 
@@ -123,8 +102,8 @@ class LiveStanding(Generic[Sensor]):
         self, since_s: float, still_s: float, watches: "Mapping[Sensor, _StillnessWatch]"
     ) -> Mapping[Sensor, Rest]:
         """What all read while still since an instant, as of the last whole second after the required time."""
-        whole_s = np.floor((still_s - self._state.required_s) / REST_EVERY_S) * REST_EVERY_S
-        until_s = since_s + self._state.required_s + float(whole_s)
+        whole_s = np.floor((still_s - self.state.required_s) / REST_EVERY_S) * REST_EVERY_S
+        until_s = since_s + self.state.required_s + float(whole_s)
         from_s = max(since_s, until_s - KEPT_S + REST_EVERY_S)
         if (from_s, until_s) != self._rest_of:
             self._rest_of = from_s, until_s
@@ -201,18 +180,7 @@ class _Bouts:
 
 
 def movement(gyr: FloatArray, acc: FloatArray) -> float:
-    """How much a sensor moves in a window, against the limits of rest.
-
-    Parameters
-    ----------
-    gyr, acc : (n, 3)
-        rad/s and m/s2, in sensor axes.
-
-    Returns
-    -------
-    float
-        Share of the limits that is reached, the worst of three; infinite for less than two samples.
-    """
+    """Give the worst share of the limits of rest, (n, 3) rad/s and m/s2; infinite for under two samples."""
     if len(gyr) < 2:
         return float("inf")
     spread = [float(np.sqrt(np.sum(np.var(values, axis=0)))) for values in (gyr, acc)]

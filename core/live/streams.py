@@ -244,26 +244,8 @@ class _EvenClock:
 
 
 def akima(at: FloatArray, values: FloatArray, required: IntArray, left: IntArray) -> FloatArray:
-    """Values (m, k) at `required` (m,) from samples (n, k) at ascending `at` (n,), `left` (m,) being the sample before.
-
-    Local and without overshoot, as offline, but without SciPy's set-up at every call (Akima 1970, doi
-    10.1145/321607.321609).
-
-    Parameters
-    ----------
-    at : (n,)
-        Ascending.
-    values : (n, k)
-        In any unit.
-    required : (m,)
-        On the scale of `at`.
-    left : (m,)
-        Index of the sample before each.
-
-    Returns
-    -------
-    (m, k)
-        In the unit of the values.
+    """Interpolate samples (n, k) at `at` (n,) to `required` (m,) without overshoot; gives (m, k).
+    `left` (m,) is the index of the sample before each (Akima 1970, doi 10.1145/321607.321609).
     """
     width = np.diff(at)[:, None]
     slope = np.empty((len(at) + 3, values.shape[1]))

@@ -129,13 +129,7 @@ class LiveWalk:
         self._slips: tuple[Slip, ...] = ()
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> WalkingState:
-        """Take new samples of some or all sites.
-
-        Raises
-        ------
-        KeyError
-            A site that was not announced.
-        """
+        """Take new samples of some or all sites; KeyError for a site not announced."""
         turned = self._sensors.update(blocks)
         joints, has_new_window = {}, False
         for joint, angle in self._angles.items():

@@ -19,40 +19,18 @@ Arrangement = Mapping[Site, int]
 
 @dataclass(frozen=True, slots=True)
 class Adjacent:
-    """What every two of s sensors show of a joint between them.
+    """What every two of s sensors show of a joint between them."""
 
-    Attributes
-    ----------
-    names : (s,)
-    cost : (s, s)
-        What they disagree on there, as a mean robust loss; symmetric.
-    height_m : (s, s)
-        How much higher the first sits than the second in standing, if they share one.
-    length_m : (s, s)
-        From the first to the joint and on to the second; symmetric.
-    """
-
-    names: tuple[str, ...]
-    cost: FloatArray
-    height_m: FloatArray
-    length_m: FloatArray
+    names: tuple[str, ...]  # (s,)
+    cost: FloatArray  # (s, s): what they disagree on there, as a mean robust loss; symmetric
+    height_m: FloatArray  # (s, s): how much higher the first sits than the second in standing, if they share one
+    length_m: FloatArray  # (s, s): from the first to the joint and on to the second; symmetric
 
 
 def adjacent_in_steps(
     smoothed: SmoothedTracks, standing: Mapping[str, FloatArray]
 ) -> Generator[None, None, Adjacent | None]:
-    """Try a joint between every two sensors, a step each; None where two of them never gave samples together.
-
-    Parameters
-    ----------
-    standing
-        Mean specific force (3,) of sensors in standing.
-
-    Returns
-    -------
-    Adjacent or None
-        What a joint between every two sensors costs, and where it would be.
-    """
+    """Try a joint between every two sensors, a step each; None where two never gave samples together."""
     names = tuple(smoothed.sensors)
     ups = [standing.get(name, one.up) for name, one in smoothed.sensors.items()]
     ups = [up / np.linalg.norm(up) for up in ups]
@@ -94,13 +72,7 @@ class Arrangements:
         return [self._arrangement(k) for k in np.flatnonzero(same).tolist()]
 
     def margin(self, arrangement: Arrangement, joint: Joint | None = None) -> float:
-        """Cost of the best rival over the cost of `arrangement`; infinite without a rival.
-
-        Parameters
-        ----------
-        joint
-            Rivals are those that part its two sensors. Without it, those that part any.
-        """
+        """Give the best rival's cost over this one's, infinite without one; rivals part the joint's sensors."""
         mine = self._index(arrangement)
         is_rival = self._links != self._links[mine]
         if joint is not None:

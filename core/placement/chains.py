@@ -32,14 +32,9 @@ USUAL_SITES = {
 class Chain:
     """The sensors of one leg by name. `foot` None: a knee alone.
 
-    Attributes
-    ----------
-    knee_margin, ankle_margin
-        Cost of the best arrangement without this joint over the cost of the best; infinite where there is no other.
-    stature
-        How much higher the thigh's sensor sits than the last one in standing, as the joints' places show.
-    moved_at_s
-        When the leg was lifted first, None where it never was.
+    `knee_margin`, `ankle_margin`: cost of the best arrangement without this joint over the cost of the best; infinite
+    where there is no other.
+    `stature`: how much higher the thigh's sensor sits than the last one in standing, as the joints' places show.
     """
 
     thigh: str
@@ -48,7 +43,7 @@ class Chain:
     knee_margin: float
     ankle_margin: float | None
     stature: Stature
-    moved_at_s: float | None
+    moved_at_s: float | None  # when the leg was lifted first, None where it never was
 
     @property
     def sensors(self) -> tuple[str, ...]:
@@ -63,20 +58,14 @@ class Chain:
 class Chains:
     """The legs in the order in which they were lifted. Left and right are not in the motion: one hint names them.
 
-    Attributes
-    ----------
-    margin
-        Cost of the best rival arrangement over the cost of this one; infinite where there is no rival.
-    lead_s
-        How much earlier the first leg was lifted than the second; None where one of them never was or is not there.
-    pelvis
-        The sensor that both thighs hang from; None where there are two to six.
+    `lead_s`: how much earlier the first leg was lifted than the second; None where one of them never was or is not
+    there.
     """
 
     legs: tuple[Chain, ...]
-    margin: float
+    margin: float  # cost of the best rival arrangement over the cost of this one; infinite where there is no rival
     lead_s: float | None
-    pelvis: str | None = None
+    pelvis: str | None = None  # the sensor that both thighs hang from; None where there are two to six
 
     @property
     def is_certain(self) -> bool:
@@ -99,52 +88,14 @@ class Chains:
 
 
 def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None) -> Chains | None:
-    """Arrange two to seven sensors to legs; None where they gave no samples together.
-
-    Two sensors are taken for a knee, three for a leg, four for two knees, five for a leg and a knee, seven for two legs
-    and a pelvis.
-
-    Parameters
-    ----------
-    tracks
-        Of a free motion, by the sensor's name.
-    standing
-        Mean specific force (3,) of each sensor in standing. Without it the mean vertical of the motion serves, which
-        shows less of a patient who lies.
-
-    Returns
-    -------
-    Chains or None
-        One chain per leg, in the order in which they were lifted.
-
-    Raises
-    ------
-    ValueError
-        Fewer than two sensors, or more than seven.
-    """
+    """Arrange 2 to 7 sensors to legs, None without common samples; no `standing`: the motion's mean vertical."""
     return at_once(chains_in_steps(tracks, standing))
 
 
 def chains_in_steps(
     tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
 ) -> Generator[None, None, Chains | None]:
-    """As `find_chains`, in steps.
-
-    Parameters
-    ----------
-    standing
-        Mean specific force (3,) of each sensor in standing, m/s2, in sensor axes.
-
-    Returns
-    -------
-    Chains or None
-        When the steps are over.
-
-    Raises
-    ------
-    ValueError
-        Fewer than two sensors, or more than seven.
-    """
+    """Arrange sensors as `find_chains` does, in steps; `standing` in m/s2 and sensor axes."""
     if len(tracks) not in USUAL_SITES:
         raise ValueError(f"{len(tracks)} sensors, expected 2 to 7")
     smoothed = yield from smoothed_in_steps(tracks)
@@ -153,7 +104,9 @@ def chains_in_steps(
         return None
     arrangements = Arrangements(USUAL_SITES[len(tracks)], adjacent)
     best = arrangements.best()
-    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, adjacent))
+    arrangement = max(
+        arrangements.alike(best), key=lambda one: sum(leg.height_m for leg in statures(one, adjacent).values())
+    )
     legs = [
         _chain(side, arrangement, arrangements, adjacent, tracks)
         for side in Side
@@ -164,10 +117,6 @@ def chains_in_steps(
     lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
     pelvis = adjacent.names[arrangement[Site.PELVIS]] if Site.PELVIS in arrangement else None
     return Chains(tuple(legs), arrangements.margin(best), lead_s, pelvis)
-
-
-def _total_height_m(arrangement: Arrangement, adjacent: Adjacent) -> float:
-    return sum(stature.height_m for stature in statures(arrangement, adjacent).values())
 
 
 def _chain(

@@ -80,38 +80,12 @@ def _standing_force(tracks: SensorTracks, site: Site) -> FloatArray | None:
 
 
 def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[tuple[Site, ...]]:
-    """Groups of sites whose sensors the motion wants exchanged; none where the labels may be right.
-
-    Whole legs cannot be distinguished, so two exchanged legs are not found.
-
-    Parameters
-    ----------
-    tracks
-        Of a free motion or a walk, by site; every site with an adjacent one among them.
-    standing
-        Mean specific force (3,) in standing, by site.
-
-    Returns
-    -------
-    list of tuple of Site
-        One item per group.
-    """
+    """Give groups of sites whose sensors the motion wants exchanged; two exchanged whole legs are not found."""
     return groups_of(at_once(detected_in_steps(tracks, standing)))
 
 
 def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Generator[None, None, dict[Site, Site]]:
-    """Where the motion puts each sensor that `exchanged_sites` doubts, in steps.
-
-    Parameters
-    ----------
-    standing
-        Mean specific force (3,) in standing, m/s2, in sensor axes, by site.
-
-    Returns
-    -------
-    dict of Site to Site
-        When the steps are over: by the site that a sensor is declared to be at, the one that it is detected at.
-    """
+    """Give, in steps, the site detected for each declared site that `exchanged_sites` doubts."""
     smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
     adjacent = (yield from adjacent_in_steps(smoothed, standing)) if smoothed else None
     if adjacent is None:
@@ -121,7 +95,11 @@ def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Gen
     best = arrangements.best()
     if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, adjacent):
         best = labelled
-    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, adjacent)]
+    upright = [
+        one
+        for one in arrangements.alike(best)
+        if all(leg.uprightness >= -MIN_UPRIGHTNESS for leg in statures(one, adjacent).values())
+    ]
     nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
     site_of = {sensor: site for site, sensor in nearest.items()}
     return {site: site_of[sensor] for site, sensor in labelled.items() if site_of[sensor] is not site}
@@ -144,10 +122,6 @@ def groups_of(detected: Mapping[Site, Site]) -> list[tuple[Site, ...]]:
 def _has_every_joint(labelled: Arrangement, adjacent: Adjacent) -> bool:
     ends = [(labelled[joint.proximal], labelled[joint.distal]) for joint in joints_between(tuple(labelled))]
     return all(adjacent.cost[pair] < SHARED_COST for pair in ends)
-
-
-def _is_upside_down(arrangement: Arrangement, adjacent: Adjacent) -> bool:
-    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, adjacent).values())
 
 
 def _changes(one: Arrangement, other: Arrangement) -> int:

@@ -31,23 +31,7 @@ class Link:
 
 
 def link(one: SmoothedTrack, two: SmoothedTrack, index: IntArray, window: IntArray) -> Link | None:
-    """Fit a common joint to two sensors; None where no window has instants enough at which both gave samples.
-
-    Unknown are the joint's place and the bias seen from either sensor, one heading per window, and the lag of the
-    second clock.
-
-    Parameters
-    ----------
-    index : (m,)
-        Of the instants to be used, neither first nor last.
-    window : (m,)
-        Numbers the stretches of one heading each.
-
-    Returns
-    -------
-    Link or None
-        Centres in m, each in its own sensor's axes.
-    """
+    """Fit a joint at `index` (m,), one heading per window; None where no window has samples enough of both."""
     is_known = np.isfinite(one.terms[index, 0, 0])
     for step in LAG_STEPS:
         is_known &= np.isfinite(two.change[index + step, 0, 0])

@@ -30,16 +30,10 @@ class SmoothedTrack:
 
     With o the vector from a joint to the sensor and b the accelerometer's bias, both in sensor axes, the joint's
     specific force in the sensor's own earth is terms @ (-o, -b, 1).
-
-    Attributes
-    ----------
-    terms : (n, 3, 7)
-    change : (n, 3, 7)
-        Their derivatives by time.
     """
 
-    terms: FloatArray
-    change: FloatArray
+    terms: FloatArray  # (n, 3, 7)
+    change: FloatArray  # (n, 3, 7): their derivatives by time
 
     @property
     def up(self) -> FloatArray:
@@ -64,10 +58,7 @@ Tracks = Mapping[str, Sequence[OrientedTrack]]
 
 
 def smoothed_in_steps(tracks: Tracks) -> Generator[None, None, SmoothedTracks | None]:
-    """What all sensors felt in the liveliest minute they have in common; None where one was not received for a second.
-
-    A step for each sensor.
-    """
+    """Smooth the sensors' liveliest common minute, a step each; None where one was not received for a second."""
     if not all(tracks.values()):
         return None
     start_s = max(min(one.track.start_s for one in stretches) for stretches in tracks.values())

@@ -11,34 +11,12 @@ BEYOND_M_S2, BEYOND_RAD_S = 14.7, 1.5  # 1.5 g; the narrowest ranges are 2 g and
 
 
 def clipped_rates(gyr_rad_s: FloatArray) -> BoolArray:
-    """Which angular rates (n, k) lie at the end of the range, one column for each end that is reached.
-
-    Parameters
-    ----------
-    gyr_rad_s : (n, 3)
-        Finite.
-
-    Returns
-    -------
-    (n, k)
-        Without columns where no rate is cut off.
-    """
+    """Give which finite rates lie at the end of the range, (n, k): one column for each end that is reached."""
     return _clipped(gyr_rad_s, BEYOND_RAD_S)
 
 
 def clipped_forces(acc_m_s2: FloatArray) -> BoolArray:
-    """The same of the specific force.
-
-    Parameters
-    ----------
-    acc_m_s2 : (n, 3)
-        Finite.
-
-    Returns
-    -------
-    (n, k)
-        Without columns where no force is cut off.
-    """
+    """Give which finite forces lie at the end of the range, (n, k): one column for each end that is reached."""
     return _clipped(acc_m_s2, BEYOND_M_S2)
 
 

@@ -33,13 +33,7 @@ SIGMAS = 5.0
 
 
 def clock_drifts(tracks: SensorTracks) -> dict[tuple[str, Site], float]:
-    """How much faster than its leg's a clock runs, percent, by walk and site; those that do not are missing.
-
-    Returns
-    -------
-    dict
-        Percent, by the walk's name and the site.
-    """
+    """Give how much faster than its leg's a clock runs, percent, by walk and site; only clocks that drift."""
     return {
         (recording.name, site): 100.0 * drift
         for recording in tracks.span
@@ -50,18 +44,7 @@ def clock_drifts(tracks: SensorTracks) -> dict[tuple[str, Site], float]:
 
 
 def about_clocks(drifts: Mapping[tuple[str, Site], float]) -> list[Finding]:
-    """A finding for every sensor whose clock runs away from the others of its leg in a walk.
-
-    Parameters
-    ----------
-    drifts
-        As `clock_drifts` gives them, percent.
-
-    Returns
-    -------
-    list of Finding
-        Empty where no clock drifts.
-    """
+    """Give a finding for every sensor whose clock drifts from its leg's in a walk; `drifts` in percent."""
     return [
         Finding("clock_drifts", Severity.WARNING, f"{name}, {site}", {"drift_percent": round(percent, 1)})
         for (name, site), percent in drifts.items()
@@ -93,13 +76,7 @@ def _track(tracks: SensorTracks, recording: Recording, site: Site) -> Track | No
 
 
 def drift_between(one: Track, two: Track) -> float | None:
-    """How much faster the second clock runs, as a share of time; 0 where it does not, None where nothing shows it.
-
-    Returns
-    -------
-    float or None
-        A share of time without unit: 0.01 is 1 %.
-    """
+    """Give how much faster the second clock runs (0.01 is 1 %); 0 without drift, None where nothing shows it."""
     time_s = np.arange(max(one.start_s, two.start_s), min(one.end_s, two.end_s), STEP_S)
     width = round(WINDOW_S / STEP_S)
     # in a long walk windows stand apart, but so near that a clock runs off by less than a step's time between two
@@ -121,25 +98,9 @@ def _likeness(track: Track, time_s: FloatArray) -> FloatArray:
     middle = len(rates) // 2
     template = rates[middle - half : middle + half]
     product = sum(np.correlate(rates[:, k], template[:, k], "valid") for k in range(3))
-    energy = moving_sum(np.sum(rates**2, axis=1), 2 * half)
+    total = np.concatenate([[0.0], np.cumsum(np.sum(rates**2, axis=1))])
+    energy = total[2 * half :] - total[: -2 * half]
     return np.asarray(product / np.sqrt(np.maximum(energy * np.sum(template**2), 1e-9)))
-
-
-def moving_sum(values: FloatArray, width: int) -> FloatArray:
-    """Sums (n - width + 1,) over `width` adjacent values.
-
-    Parameters
-    ----------
-    values : (n,)
-        In any unit.
-
-    Returns
-    -------
-    (n - width + 1,)
-        In that unit.
-    """
-    total = np.concatenate([[0.0], np.cumsum(values)])
-    return total[width:] - total[:-width]
 
 
 def _followed(one: FloatArray, two: FloatArray, width: int, step: int) -> list[tuple[int, float]]:

@@ -29,13 +29,7 @@ class ClockJump:
 
 
 def spans_of(time_s: FloatArray) -> list[Span]:
-    """Begin and end of each part of a recording without a gap longer than `JUMP_S`.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Ascending stamps.
-    """
+    """Give begin and end of each part of a recording without a gap longer than `JUMP_S`."""
     if not len(time_s):
         return []
     ends = np.flatnonzero(np.diff(time_s) > JUMP_S)
@@ -44,20 +38,9 @@ def spans_of(time_s: FloatArray) -> list[Span]:
 
 
 def jump_of(own: Sequence[Span], others: Sequence[Sequence[Span]]) -> ClockJump | None:
-    """Find the first jump of a sensor's clock.
-
-    A gap is one where this sensor measured exactly as long as another that has no such gap. It is one, too, where no
-    other measured or paused during most of it, and it measured nearly as long, or the gap is longer than any loss.
-
-    Parameters
-    ----------
-    own, others
-        `spans_of` this sensor and of the others of the same recording, whose clocks began together.
-
-    Returns
-    -------
-    ClockJump or None
-        None, too, where there is no other sensor.
+    """Find the first jump of a sensor's clock; None where there is none, or no other sensor to compare with.
+    A gap is a jump where the sensor measured as long as another without it, or where no other measured
+    or paused for most of it and it measured nearly as long, or the gap is longer than any loss.
     """
     measured_s = _measured_s(own)
     apart_s = min((abs(_measured_s(spans) - measured_s) for spans in others if spans), default=np.inf)
@@ -77,11 +60,7 @@ def _pauses(spans: Sequence[Span]) -> list[Span]:
 
 
 def _covered_s(spans: Sequence[Span], gap: Span) -> float:
-    return sum(_common_s(one, gap) for one in spans)
-
-
-def _common_s(one: Span, other: Span) -> float:
-    return max(min(one[1], other[1]) - max(one[0], other[0]), 0.0)
+    return sum(max(min(one[1], gap[1]) - max(one[0], gap[0]), 0.0) for one in spans)
 
 
 def _measured_s(spans: Sequence[Span]) -> float:

@@ -66,18 +66,7 @@ _PER_SAMPLE = (*_SIGNALS, "stretch", "index", "knot_left", "knot_share")
 
 
 def moving_indices(pair: Pair, max_rate_rad_s: float = np.inf) -> IntArray:
-    """Indices of the known samples from the first to the last movement, below a rate.
-
-    Parameters
-    ----------
-    max_rate_rad_s
-        Samples at which either sensor turns faster are left out.
-
-    Returns
-    -------
-    (m,)
-        Ascending.
-    """
+    """Give indices (m,) of the known samples from first to last movement, both sensors below a rate."""
     moving = np.flatnonzero(pair.is_moving)
     if len(moving) == 0:
         return np.empty(0, dtype=np.int64)
@@ -88,20 +77,7 @@ def moving_indices(pair: Pair, max_rate_rad_s: float = np.inf) -> IntArray:
 
 
 def slow_ones(pair: Pair, index: IntArray, max_rate_rad_s: float) -> IntArray:
-    """Those of the samples at which both sensors turn more slowly than a rate.
-
-    Parameters
-    ----------
-    index : (m,)
-        Of samples of the pair.
-    max_rate_rad_s
-        Below this both sensors have to turn.
-
-    Returns
-    -------
-    (k,)
-        Those of `index` that remain.
-    """
+    """Give those of `index` (m,) at which both sensors turn more slowly than the rate."""
     squares = [np.einsum("ni,ni->n", rate, rate) for rate in (pair.g1, pair.g2)]
     return index[(np.maximum(*squares) < max_rate_rad_s**2)[index]]
 
@@ -113,55 +89,19 @@ def united(parts: list[Datasets]) -> Datasets:
 
 
 def knot_positions(pair: Pair) -> tuple[int, FloatArray]:
-    """Number of intervals between the pair's heading knots, and where each sample (n,) lies, counted in intervals.
-
-    Returns
-    -------
-    int and (n,)
-        Intervals, and fractional positions from 0 to that number.
-    """
+    """Give the number of intervals between heading knots, and each sample's position (n,) in intervals."""
     intervals = max(1, round(pair.duration_s / KNOT_SPACING_S))
     return intervals, (pair.time_s - pair.time_s[0]) / pair.duration_s * intervals
 
 
 def knot_sums(left: IntArray, share: FloatArray, values: FloatArray, knots: int) -> FloatArray:
-    """Sums (k,) of values (n,), each shared out between the knot to its left and the next.
-
-    Parameters
-    ----------
-    left : (n,)
-        Number of the knot before each sample.
-    share : (n,)
-        Of the next knot in it, 0 to 1.
-    values : (n,)
-        In any unit.
-
-    Returns
-    -------
-    (k,)
-        In that unit.
-    """
+    """Sum values (n,) to knots (k,), shared between the knot to the left and the next, `share` of it (0 to 1)."""
     sums = np.bincount(left, (1 - share) * values, knots) + np.bincount(left + 1, share * values, knots)
     return sums.astype(np.float64)
 
 
 def knot_products(left: IntArray, share: FloatArray, weight: FloatArray, knots: int) -> FloatArray:
-    """S' diag(weight) S (k, k), with S (n, k) the knots' shares: a sample feels two adjacent knots, no others.
-
-    Parameters
-    ----------
-    left : (n,)
-        Number of the knot before each sample.
-    share : (n,)
-        Of the next knot in it, 0 to 1.
-    weight : (n,)
-        Of each sample.
-
-    Returns
-    -------
-    (k, k)
-        Symmetric, in the unit of the weights.
-    """
+    """Give S' diag(weight) S (k, k), with S (n, k) the knots' shares; `share` is the next knot's, 0 to 1."""
     product = np.zeros((knots, knots))
     own = np.bincount(left, (1 - share) ** 2 * weight, knots) + np.bincount(left + 1, share**2 * weight, knots)
     mixed = np.bincount(left, share * (1 - share) * weight, knots)[: knots - 1]
@@ -172,18 +112,7 @@ def knot_products(left: IntArray, share: FloatArray, weight: FloatArray, knots: 
 
 
 def gather(pairs: tuple[Pair, ...], indices: list[IntArray]) -> Datasets:
-    """Join the samples at `indices` of each pair.
-
-    Parameters
-    ----------
-    indices : one (m,) per pair
-        Ascending.
-
-    Returns
-    -------
-    Datasets
-        All samples in the order of the pairs.
-    """
+    """Join the samples at each pair's ascending indices, in the order of the pairs."""
     left, share, spacing, stretch = [], [], [], []
     first_knot = 0
     for s, (pair, index) in enumerate(zip(pairs, indices, strict=True)):

@@ -27,18 +27,12 @@ class JointForce:
 
     With o the vector from the joint to the sensor and b the accelerometer's bias, the joint's specific force in the
     sensor's own earth is terms @ (-o, -b, 1).
-
-    Attributes
-    ----------
-    terms : (m, 3, 7)
-    received : (m,)
-        Share of the kernel's weight on samples that were received.
     """
 
     start_s: float
     step_s: float
-    terms: FloatArray
-    received: FloatArray
+    terms: FloatArray  # (m, 3, 7)
+    received: FloatArray  # (m,): share of the kernel's weight on samples that were received
 
     @property
     def end_s(self) -> float:
@@ -66,20 +60,7 @@ def joint_force(
     earth_from: FloatArray,
     is_received: BoolArray,
 ) -> JointForce:
-    """Low-pass the terms of one stretch.
-
-    Parameters
-    ----------
-    rate, acceleration, force : (n, 3)
-        Angular rate, angular acceleration (NaN where unknown) and specific force, in sensor axes.
-    earth_from : (n, 3, 3)
-    is_received : (n,)
-
-    Returns
-    -------
-    JointForce
-        Terms in the sensor's own earth axes.
-    """
+    """Low-pass one stretch's terms into the sensor's own earth axes; NaN acceleration counts as not received."""
     is_known = is_received & np.isfinite(acceleration[:, 0])
     # one signal after the other, which is several times faster than one sample after the other
     turn = np.ascontiguousarray(earth_from.transpose(1, 2, 0))

@@ -42,21 +42,12 @@ def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> 
 
 
 def accelerometer_time_constant_s() -> float:
-    """Time constant by which VQF corrects the vertical from what the accelerometer feels: as the filter has it.
-
-    Returns
-    -------
-    float
-        s.
-    """
+    """Give the time constant by which VQF corrects the vertical from the accelerometer, as the filter has it."""
     return float(VQF(1.0).params["tauAcc"])
 
 
 def as_of_intervals(one: OrientedTrack) -> OrientedTrack:
-    """What `oriented` would have made, up to the filter's own lag of a sample, of the same rates taken as averages.
-
-    The mean of two rates leads to half an interval before the stamp of the second; averages lead to the stamp itself.
-    """
+    """Give what `oriented` makes of the same rates taken as interval averages, up to a sample of filter lag."""
     track = one.track
     x, y, z = 0.25 * track.step_s * track.gyr_rad_s.T  # half of half an interval's angle, small enough for its sine
     w, i, j, k = one.q_earth_from_sensor.T
@@ -71,10 +62,7 @@ def as_of_intervals(one: OrientedTrack) -> OrientedTrack:
 
 
 def oriented_to_north(track: Track) -> OrientedTrack | None:
-    """The device's own orientation, else one with a heading from the magnetic field, else None.
-
-    `track` is one that `oriented` returned.
-    """
+    """Give the device's orientation, else a magnetic heading, else None; `track` comes from `oriented`."""
     if track.q_device is not None and np.isfinite(track.q_device).all():
         return OrientedTrack(track, track.q_device)
     if track.mag is not None and np.isfinite(track.mag).all():
@@ -85,18 +73,7 @@ def oriented_to_north(track: Track) -> OrientedTrack | None:
 
 
 def interval_rates(rates: FloatArray) -> FloatArray:
-    """Mean of each rate and its predecessor: the rate over the interval before each sample.
-
-    Parameters
-    ----------
-    rates : (n, 3)
-        rad/s, at the instants of their stamps.
-
-    Returns
-    -------
-    (n, 3)
-        rad/s.
-    """
+    """Average each rate (n, 3) and its predecessor: the rate over the interval before each sample, rad/s."""
     mean = rates.copy()
     mean[1:] += rates[:-1]
     mean[1:] *= 0.5

@@ -82,38 +82,14 @@ class Pair:
 
 
 def is_turning(one_rad_s: FloatArray, other_rad_s: FloatArray) -> BoolArray:
-    """Samples (n,) at which two segments turn, and not more slowly than in half of all.
-
-    Every joint is a hinge while it rests, and between two movements a person may rest most of the time.
-
-    Parameters
-    ----------
-    one_rad_s, other_rad_s : (n, 3)
-        Angular rates, rad/s, each in its own sensor's axes.
-
-    Returns
-    -------
-    (n,)
-        True where they do.
-    """
+    """Give the samples (n,) at which two segments turn, and not more slowly than in half of all."""
     squares = (np.einsum("ni,ni->n", rate, rate) for rate in (one_rad_s, other_rad_s))
     speed = np.sqrt(sum(squares))
     return np.asarray(speed > max(MOVING_RAD_S, float(np.median(speed))))
 
 
 def moving_mean(values: FloatArray, width: int) -> FloatArray:
-    """Centred mean of (n, ...) over up to `width` samples, fewer at the borders.
-
-    Parameters
-    ----------
-    values : (n, ...)
-        In any unit.
-
-    Returns
-    -------
-    (n, ...)
-        In that unit.
-    """
+    """Average values (n, ...) over up to `width` samples, centred; fewer at the borders."""
     total = np.zeros((len(values) + 1, *values.shape[1:]))
     np.cumsum(values, axis=0, out=total[1:])
     index = np.arange(len(values))
@@ -123,40 +99,14 @@ def moving_mean(values: FloatArray, width: int) -> FloatArray:
 
 
 def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
-    """Derivative (n, 3) of rates on an even clock, unknown (NaN) for two samples at each end.
-
-    Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 1.
-
-    Parameters
-    ----------
-    rate : (n, 3)
-        rad/s, in sensor axes.
-
-    Returns
-    -------
-    (n, 3)
-        rad/s2, in sensor axes.
-    """
+    """Differentiate rates; NaN in two samples per end (Seel et al. 2014, doi 10.3390/s140406891, eq 1)."""
     derivative = np.full_like(rate, np.nan)
     derivative[2:-2] = (rate[:-4] - 8 * rate[1:-3] + 8 * rate[3:-1] - rate[4:]) / (12 * step_s)
     return derivative
 
 
 def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArray:
-    """K with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7); (..., 3, 3).
-
-    Parameters
-    ----------
-    rate : (..., 3)
-        rad/s, in sensor axes.
-    angular_acceleration : (..., 3)
-        rad/s2, in sensor axes.
-
-    Returns
-    -------
-    (..., 3, 3)
-        1/s2.
-    """
+    """Give K (..., 3, 3), with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7)."""
     matrix = rate[..., :, None] * rate[..., None, :]
     square = np.sum(rate**2, axis=-1)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # [g]x[g]x = g g' - |g|^2
@@ -167,22 +117,7 @@ def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArr
 
 
 def lever_acceleration(rate: FloatArray, angular_acceleration: FloatArray, lever_m: FloatArray) -> FloatArray:
-    """K o (n, 3) of one lever o (3,).
-
-    Parameters
-    ----------
-    rate : (n, 3)
-        rad/s, in sensor axes.
-    angular_acceleration : (n, 3)
-        rad/s2, in sensor axes.
-    lever_m : (3,)
-        In sensor axes.
-
-    Returns
-    -------
-    (n, 3)
-        m/s2, in sensor axes.
-    """
+    """Give K o (n, 3) of one lever o (3,), m/s2, in sensor axes."""
     along, square = rate @ lever_m, np.sum(rate**2, axis=1)
     return along[:, None] * rate - square[:, None] * lever_m - angular_acceleration @ cross_matrix(lever_m).T
 
@@ -229,24 +164,7 @@ def pair_of(
     orientations: tuple[FloatArray, FloatArray],
     is_measured: BoolArray,
 ) -> Pair:
-    """A pair from samples of both sensors at the same even instants.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Even instants, `step_s` apart.
-    rates, forces : two of (n, 3)
-        Proximal and distal, in sensor axes.
-    orientations : two of (n, 4)
-        Earth from sensor.
-    is_measured : (n,)
-        False where a sample was interpolated over a gap.
-
-    Returns
-    -------
-    Pair
-        Each sensor in its own axes.
-    """
+    """Make a pair from samples at the same even instants; proximal first, orientations earth from sensor."""
     one, two = (
         OrientedTrack(Track(float(time_s[0]), step_s, rate, force, None, None, is_measured), q)
         for rate, force, q in zip(rates, forces, orientations, strict=True)

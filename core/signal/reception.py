@@ -25,23 +25,14 @@ Pause = tuple[float, float]
 class Reception:
     """What one recording holds of one sensor; instants on the recording's clock.
 
-    Attributes
-    ----------
-    lost_percent
-        Samples missing outside of pauses; 100 where next to none was received.
-    gaps_s : (m, 2)
-        First and last instant of what is longer than `MAX_REPORTED_GAP_S`, ascending.
-    span_s
-        First and last sample.
-    clipped_rates_s, clipped_forces_s : (k,)
-        Samples at the end of the sensor's range, ascending.
-    rate_percent
-        The rate that the samples came at, of the one that was set; None where that is not known.
+    `gaps_s`: (m, 2): first and last instant of what is longer than `MAX_REPORTED_GAP_S`, ascending.
+    `clipped_rates_s`, `clipped_forces_s`: (k,): samples at the end of the sensor's range, ascending.
+    `rate_percent`: the rate that the samples came at, of the one that was set; None where that is not known.
     """
 
-    lost_percent: float = 0.0
+    lost_percent: float = 0.0  # samples missing outside of pauses; 100 where next to none was received
     gaps_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
-    span_s: tuple[float, float] = (0.0, 0.0)
+    span_s: tuple[float, float] = (0.0, 0.0)  # first and last sample
     clipped_rates_s: FloatArray = field(default_factory=lambda: np.empty(0))
     clipped_forces_s: FloatArray = field(default_factory=lambda: np.empty(0))
     rate_percent: float | None = None
@@ -50,20 +41,7 @@ class Reception:
 def receptions(
     recording: Recording, nominal_hz: Mapping[Site, float | None], offsets_s: Mapping[Site, float]
 ) -> dict[Site, Reception]:
-    """What a recording holds of each of some sensors.
-
-    Parameters
-    ----------
-    nominal_hz
-        The rate that each sensor was set to.
-    offsets_s
-        What brings each sensor's clock to the recording's; of which sensors, too.
-
-    Returns
-    -------
-    dict of Site to Reception
-        Times in seconds.
-    """
+    """Give what a recording holds of the sensors in `offsets_s`, which bring each clock to the recording's."""
     pauses = pauses_of(recording)
     return {
         site: _reception(recording.imu[site], nominal_hz.get(site), pauses, offset_s)
@@ -88,18 +66,7 @@ def _reception(block: ImuBlock, nominal_hz: float | None, pauses: Sequence[Pause
 
 
 def gaps_of(received_s: FloatArray) -> FloatArray:
-    """First and last instant (m, 2) of each gap that is longer than may be bridged in silence.
-
-    Parameters
-    ----------
-    received_s : (n,)
-        Ascending stamps of the samples received, two at least.
-
-    Returns
-    -------
-    (m, 2)
-        s.
-    """
+    """Give first and last instant (m, 2) of each gap too long to be bridged without a report."""
     after = np.flatnonzero(np.diff(received_s) > max(MAX_REPORTED_GAP_S, 1.5 * nominal_step_s(received_s)))
     return np.stack([received_s[after], received_s[after + 1]], axis=1)
 
@@ -118,18 +85,7 @@ def pauses_of(recording: Recording) -> list[Pause]:
 
 
 def outside_of(pauses: Sequence[Pause], gaps_s: FloatArray) -> FloatArray:
-    """The part (m,) of each gap (m, 2) in which other sensors were received.
-
-    Parameters
-    ----------
-    gaps_s : (m, 2)
-        First and last instant of each.
-
-    Returns
-    -------
-    (m,)
-        s.
-    """
+    """Give the part (m,) of each gap (m, 2), in s, in which other sensors were received."""
     left = gaps_s[:, 1] - gaps_s[:, 0]
     for first, last in pauses:
         left = left - np.maximum(np.minimum(gaps_s[:, 1], last) - np.maximum(gaps_s[:, 0], first), 0.0)
@@ -137,18 +93,7 @@ def outside_of(pauses: Sequence[Pause], gaps_s: FloatArray) -> FloatArray:
 
 
 def lost_percent(block: ImuBlock, nominal_hz: float | None = None, pauses: Sequence[Pause] = ()) -> float:
-    """How many of a sensor's samples are missing outside of pauses; 100 where next to none came.
-
-    Parameters
-    ----------
-    nominal_hz
-        The rate that the sensor was set to; where it is not known, or kept, losses show in the stamps alone.
-
-    Returns
-    -------
-    float
-        Percent.
-    """
+    """Give the share of missing samples outside pauses, 100 where next to none came; no rate: by stamps alone."""
     received_s = block.time_s[is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
     if len(received_s) < MIN_STRETCH_SAMPLES:
         return ALL_LOST_PERCENT
@@ -164,20 +109,7 @@ def lost_percent(block: ImuBlock, nominal_hz: float | None = None, pauses: Seque
 
 
 def rate_percent(received_s: FloatArray, nominal_hz: float | None) -> float | None:
-    """The rate that samples came at (gaps counted as if they had come), of the one that was set.
-
-    Parameters
-    ----------
-    received_s : (n,)
-        Ascending stamps of the samples received.
-    nominal_hz
-        What the sensor was set to; None: not known.
-
-    Returns
-    -------
-    float or None
-        Percent.
-    """
+    """Give the rate that samples came at in percent of the nominal one, gaps counted as received."""
     if not nominal_hz or len(received_s) < MIN_STRETCH_SAMPLES:
         return None
     steps = len(received_s) - 1 + float(np.sum(_missing_rows(received_s, nominal_step_s(received_s))))

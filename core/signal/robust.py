@@ -6,18 +6,7 @@ from core.samples import FloatArray
 
 
 def robust_sd(values: FloatArray) -> float:
-    """Standard deviation by the median of the absolute values.
-
-    Parameters
-    ----------
-    values : (n,)
-        In any unit, scattered around zero.
-
-    Returns
-    -------
-    float
-        In that unit.
-    """
+    """Estimate the SD of values scattered around zero by their median absolute value; NaN if any is NaN."""
     if not values.size:
         return float("nan")
     size = np.abs(values).ravel()

@@ -9,18 +9,7 @@ from core.samples import ComplexArray, FloatArray
 
 
 def cross_matrix(v: FloatArray) -> FloatArray:
-    """[v]x of vectors (..., 3), so that cross_matrix(v) @ w is v x w; (..., 3, 3).
-
-    Parameters
-    ----------
-    v : (..., 3)
-        In any unit.
-
-    Returns
-    -------
-    (..., 3, 3)
-        In that unit.
-    """
+    """Give [v]x (..., 3, 3) of vectors (..., 3), so that cross_matrix(v) @ w is v x w."""
     matrix = np.zeros((*v.shape[:-1], 3, 3))
     matrix[..., 0, 1], matrix[..., 0, 2] = -v[..., 2], v[..., 1]
     matrix[..., 1, 0], matrix[..., 1, 2] = v[..., 2], -v[..., 0]
@@ -29,19 +18,8 @@ def cross_matrix(v: FloatArray) -> FloatArray:
 
 
 def joint_frame(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit vectors x, y spanning the plane normal to `axis`, with (x, y, axis) right-handed.
-
+    """Give unit vectors x, y normal to unit `axis` (..., 3), with (x, y, axis) right-handed.
     x = (j x c)/|j x c| with c the unit vector least parallel to j, y = j x x (Seel et al. 2014, eq 13).
-
-    Parameters
-    ----------
-    axis : (..., 3)
-        Unit vectors.
-
-    Returns
-    -------
-    (..., 3) and (..., 3)
-        Unit vectors x and y.
     """
     if axis.ndim == 1:
         return _frame_of_one(*axis.tolist())
@@ -66,18 +44,7 @@ def _frame_of_one(a: float, b: float, c: float) -> tuple[FloatArray, FloatArray]
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """a x b of vectors (..., 3); several times faster than NumPy's on a few of them.
-
-    Parameters
-    ----------
-    a, b : (..., 3)
-        In any units.
-
-    Returns
-    -------
-    (..., 3)
-        In the product of their units.
-    """
+    """Compute a x b of vectors (..., 3); several times faster than NumPy's on a few of them."""
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -86,20 +53,7 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def turn_about_vertical(heading_rad: FloatArray, v: FloatArray) -> FloatArray:
-    """Rz(heading) v for headings (...,) and vectors (..., 3).
-
-    Parameters
-    ----------
-    heading_rad : (...,)
-        Positive to the left, seen from above.
-    v : (..., 3)
-        In earth axes, z up.
-
-    Returns
-    -------
-    (..., 3)
-        In the unit of `v`.
-    """
+    """Give Rz(heading) v of vectors (..., 3) in earth axes, z up; headings (...,) are positive to the left."""
     c, s = np.cos(heading_rad), np.sin(heading_rad)
     turned = np.empty((*np.broadcast_shapes(c.shape, v.shape[:-1]), 3))
     turned[..., 0] = c * v[..., 0] - s * v[..., 1]
@@ -109,67 +63,23 @@ def turn_about_vertical(heading_rad: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def matrix_from_quaternion(q: FloatArray) -> FloatArray:
-    """Rotation matrices (n, 3, 3) of unit quaternions (n, 4), scalar first.
-
-    Parameters
-    ----------
-    q : (n, 4)
-        Unit quaternions, scalar first.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Takes vectors as the quaternion does.
-    """
+    """Give the rotation matrices (n, 3, 3) of unit quaternions (n, 4), scalar first."""
     return Rotation.from_quat(q, scalar_first=True).as_matrix()
 
 
 def angle_between(a: FloatArray, b: FloatArray) -> float:
-    """Angle between two vectors (3,), radians; exact for small angles too.
-
-    Parameters
-    ----------
-    a, b : (3,)
-        In any unit.
-
-    Returns
-    -------
-    float
-        rad, 0 to pi.
-    """
+    """Give the angle between two vectors (3,) in rad, 0 to pi; exact for small angles too."""
     return float(np.arctan2(np.linalg.norm(np.cross(a, b)), np.dot(a, b)))
 
 
 def wrap(angle_rad: FloatArray) -> FloatArray:
-    """Angles brought to -pi..pi.
-
-    Parameters
-    ----------
-    angle_rad : (...,)
-        Of any size.
-
-    Returns
-    -------
-    (...,)
-        rad.
-    """
+    """Wrap angles to -pi..pi."""
     return (angle_rad + np.pi) % (2 * np.pi) - np.pi
 
 
 def in_plane(v: FloatArray, axis: FloatArray) -> ComplexArray:
-    """Vectors (n, 3) seen in the plane normal to `axis`, as complex numbers v.x + i v.y (eq 13).
-
-    Parameters
-    ----------
-    v : (n, 3)
-        In any unit, in the axes of `axis`.
-    axis : (3,)
-        Unit axis.
-
-    Returns
-    -------
-    (n,)
-        Complex, in the unit of `v`. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 13.
+    """Project (n, 3) to the plane normal to unit `axis` as v.x + i v.y.
+    Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 13.
     """
     x, y = joint_frame(axis)
     return np.asarray(v @ x + 1j * (v @ y))

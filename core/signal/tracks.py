@@ -57,18 +57,7 @@ class Track:
 
 
 def nominal_step_s(time_s: FloatArray) -> float:
-    """The sensor's sampling interval, from the steps without gaps.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Ascending, two at least.
-
-    Returns
-    -------
-    float
-        s.
-    """
+    """Give the sensor's sampling interval from the steps without gaps; needs two ascending stamps at least."""
     steps = np.diff(time_s)
     # a quartile and not the median, which half of the rows missing would double; NumPy's own takes five times as long
     position = 0.25 * (len(steps) - 1)
@@ -91,13 +80,7 @@ class Block:
 
 
 def blocks_of(first_s: float, last_s: float) -> Iterator[Block]:
-    """Pieces that cover first..last; their cores meet without overlap.
-
-    Returns
-    -------
-    Iterator of Block
-        In order of time.
-    """
+    """Give pieces in order of time that cover first to last; their cores meet without overlap."""
     count = max(1, int(np.ceil((last_s - first_s) / BLOCK_S - 0.5)))
     for k in range(count):
         core_from = first_s + k * BLOCK_S if k else -np.inf
@@ -145,73 +128,25 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
 
 
 def is_received(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
-    """Which samples (n,) are measurements: finite, possible, later than the one before, and not of a stuck sensor.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Stamps in the order of the samples.
-    gyr, acc : (n, 3)
-        rad/s and m/s2, in sensor axes.
-
-    Returns
-    -------
-    (n,)
-        True where a sample is a measurement.
-    """
+    """Give which samples are measurements: finite, possible, later than the one before, not of a stuck sensor."""
     is_there = is_possible(gyr, acc)
     is_there[1:] &= np.diff(time_s) > 0
     return is_there & ~is_stuck(time_s, gyr, acc)
 
 
 def is_possible(gyr: FloatArray, acc: FloatArray) -> BoolArray:
-    """Samples (n,) that a sensor worn by a patient can measure; missing ones cannot be.
-
-    Parameters
-    ----------
-    gyr, acc : (n, 3)
-        rad/s and m/s2, in sensor axes.
-
-    Returns
-    -------
-    (n,)
-        True where it is.
-    """
+    """Give which samples (n,) a sensor worn by a patient can measure; False where values are missing."""
     with np.errstate(invalid="ignore"):
         return in_every_column(np.abs(gyr) <= MAX_RATE_RAD_S) & in_every_column(np.abs(acc) <= MAX_FORCE_M_S2)
 
 
 def in_every_column(holds: BoolArray) -> BoolArray:
-    """Rows (n,) of (n, 3) where all hold; several times faster than reducing along so short an axis.
-
-    Parameters
-    ----------
-    holds : (n, 3)
-        Of any condition.
-
-    Returns
-    -------
-    (n,)
-        True where all three are.
-    """
+    """Give the rows (n,) of (n, 3) where all hold; several times faster than reducing along so short an axis."""
     return holds[:, 0] & holds[:, 1] & holds[:, 2]
 
 
 def is_stuck(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
-    """Samples (n,) of a run of equal rows that lasts longer than a sensor holds a value.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Ascending stamps.
-    gyr, acc : (n, 3)
-        rad/s and m/s2, in sensor axes.
-
-    Returns
-    -------
-    (n,)
-        True where the sensor repeats itself.
-    """
+    """Give which samples (n,) are in a run of equal rows that lasts longer than a sensor holds a value."""
     stuck = np.zeros(len(time_s), dtype=bool)
     is_same = np.zeros(len(time_s), dtype=bool)
     is_same[1:] = in_every_column(gyr[1:] == gyr[:-1]) & in_every_column(acc[1:] == acc[:-1])
@@ -243,18 +178,7 @@ def _unit(q: FloatArray) -> FloatArray:
 
 
 def continuous(q: FloatArray) -> FloatArray:
-    """The same rotations (n, 4) without jumps between q and -q.
-
-    Parameters
-    ----------
-    q : (n, 4)
-        Unit quaternions.
-
-    Returns
-    -------
-    (n, 4)
-        The same up to sign.
-    """
+    """Remove the jumps between q and -q from unit quaternions (n, 4)."""
     flips = np.sum(q[1:] * q[:-1], axis=1) < 0
     if not flips.any():
         return q
@@ -331,23 +255,7 @@ def _misfit(at: FloatArray, values: FloatArray) -> float:
 
 
 def at_positions(values: FloatArray, position: FloatArray) -> FloatArray:
-    """Values (n, k) of an even track at fractional indices (m,), by cubics through four samples.
-
-    Whole positions return the samples themselves, a view of them where they follow each other. Positions outside of
-    0..n-1 take the nearest sample.
-
-    Parameters
-    ----------
-    values : (n, k)
-        In any unit.
-    position : (m,)
-        Fractional indices.
-
-    Returns
-    -------
-    (m, k)
-        In that unit.
-    """
+    """Interpolate (n, k) at fractional indices (m,) by cubics, the nearest outside 0..n-1; may give a view."""
     n = len(values)
     position = np.clip(position, 0, n - 1)
     left = np.floor(position).astype(int)

@@ -86,16 +86,8 @@ class TimedPart:
 class TimedTest:
     """What one test gives; NaN where not measured, and `missing` names the reason.
 
-    Attributes
-    ----------
-    start_s, end_s
-        On the recording's clock.
-    distance_m
-        What counts: where a key ends a walk between tapes the tapes', else the sensors', turns included.
-    sensor_distance_m
-        By the feet between start and end.
-    pauses_s
-        From contact to toe-off, wherever both feet stood for a second.
+    `start_s`, `end_s`: on the recording's clock.
+    `distance_m`: what counts: where a key ends a walk between tapes the tapes', else the sensors', turns included.
     """
 
     protocol: TimedProtocol
@@ -104,10 +96,10 @@ class TimedTest:
     is_start_by_key: bool
     is_end_by_key: bool
     distance_m: float
-    sensor_distance_m: float
+    sensor_distance_m: float  # by the feet between start and end
     cadence_steps_min: float
     turns: tuple[Turn, ...]
-    pauses_s: tuple[tuple[float, float], ...]
+    pauses_s: tuple[tuple[float, float], ...]  # from contact to toe-off, wherever both feet stood for a second
     laps: tuple[TimedPart, ...]
     thirds: tuple[TimedPart, ...]
     rises: tuple[Rise, ...]

@@ -41,12 +41,8 @@ NO_SWINGS = FootSwings(np.empty(0), np.empty(0), np.empty(0), np.empty((0, 2)), 
 class LiveReadout:
     """A test now, on the clock of the sensors; NaN where not known (yet).
 
-    Attributes
-    ----------
-    distance_m
-        Since the start, as far as the steps show; NaN while `reasons` say why it cannot be determined.
-    steps
-        Side and way in metres of each contact since the start, in order of time.
+    `distance_m`: since the start, as far as the steps show; NaN while `reasons` say why it cannot be determined.
+    `steps`: side and way in metres of each contact since the start, in order of time.
     """
 
     planned: PlannedTest

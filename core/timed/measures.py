@@ -31,13 +31,7 @@ class MeanOfAttempts:
 
 
 def figure_of(test: TimedTest) -> float:
-    """Speed between the tapes, distance in a set time, or time from the chair; NaN where it was not measured.
-
-    Returns
-    -------
-    float
-        m/s, m or s, as the test's column names it.
-    """
+    """Give speed between tapes, distance in a set time or time from the chair; NaN where not measured."""
     if test.protocol is TimedProtocol.TEN_METRES:
         return test.speed_m_s
     return test.distance_m if test.definition.duration_s is not None else test.time_s
@@ -51,12 +45,6 @@ def rests_on_feet(test: TimedTest) -> bool:
 
 
 def mean_of_attempts(values: Iterable[float]) -> MeanOfAttempts:
-    """The mean of those that were measured; NaN where none was.
-
-    Returns
-    -------
-    MeanOfAttempts
-        In the unit of the values.
-    """
+    """Average the values that were measured; NaN where none was."""
     known = [value for value in values if math.isfinite(value)]
     return MeanOfAttempts(float(np.mean(known)) if known else math.nan, len(known))

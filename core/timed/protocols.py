@@ -123,26 +123,16 @@ class KnownError:
 class Definition:
     """One test.
 
-    Attributes
-    ----------
-    starts, ends
-        What starts and ends the clock where no key does.
-    duration_s
-        Of a test of a set time.
-    tape_m
-        Where a set distance begins and ends, from where the patient is standing at first.
-    rises
-        How often the patient rises.
-    is_walked
-        Whether there are strides in it: a patient who rises and sits makes none.
+    `starts`, `ends`: what starts and ends the clock where no key does.
+    `tape_m`: where a set distance begins and ends, from where the patient is standing at first.
     """
 
     starts: str
     ends: str
-    duration_s: float | None = None
+    duration_s: float | None = None  # of a test of a set time
     tape_m: tuple[float, float] | None = None
-    rises: int = 0
-    is_walked: bool = True
+    rises: int = 0  # how often the patient rises
+    is_walked: bool = True  # whether there are strides in it: a patient who rises and sits makes none
     errors: tuple[KnownError, ...] = ()
 
     @property

@@ -74,18 +74,7 @@ def _upright(tracks: SensorTracks, site: Site) -> FloatArray | None:
 
 
 def motions_of_tilt(time_s: FloatArray, tilt_rad: FloatArray) -> SeatMotions:
-    """Rises and sittings from the thighs' tilt from standing.
-
-    Parameters
-    ----------
-    time_s, tilt_rad : (n,)
-        On an even clock.
-
-    Returns
-    -------
-    SeatMotions
-        In seconds.
-    """
+    """Find rises and sittings from the thighs' tilt from standing, on an even clock."""
     state = np.where(tilt_rad > SEATED_RAD, 1, np.where(tilt_rad < STANDING_RAD, -1, 0))
     sure = np.flatnonzero(state)
     changes = np.flatnonzero(np.diff(state[sure]))

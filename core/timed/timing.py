@@ -21,31 +21,14 @@ THIRDS = 3
 
 
 def time_test(tracks: SensorTracks, recording: Recording, planned: PlannedTest) -> TimedTest:
-    """Time one test from its recording.
-
-    Parameters
-    ----------
-    planned
-        Which test it is, and when a key was pressed, on the recording's clock.
-
-    Returns
-    -------
-    TimedTest
-        Seconds, metres, radians.
-    """
+    """Time one test from its recording, in seconds, metres and radians; key times on its clock."""
     is_from_chair = DEFINITIONS[planned.protocol].is_from_chair
     seat = seat_motions(tracks, recording) if is_from_chair else NO_SEAT
     return timed(body_way(tracks, recording), seat, planned)
 
 
 def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
-    """Time one test from how the body came along and how it rose; live and from a recording the same.
-
-    Returns
-    -------
-    TimedTest
-        Seconds on the clock of `way` and of the keys, metres, radians.
-    """
+    """Time one test from the body's way and rises, live and recorded alike, on the clock of `way`."""
     definition = DEFINITIONS[planned.protocol]
     missing: list[NotMeasured] = []
     if definition.is_from_chair:
@@ -149,13 +132,7 @@ def _end_on_foot(definition: Definition, way: BodyWay, start_s: float) -> float:
 
 
 def stairs_in(way: BodyWay, start_s: float, end_s: float, *, are_declared: bool) -> tuple[StairStride, ...]:
-    """Every stride onto a higher or a lower step between two instants; `are_declared` as in `on_stairs`.
-
-    Returns
-    -------
-    tuple of StairStride
-        In order of time, seconds and metres; a foot's first contact ends no stride.
-    """
+    """Give the strides onto a higher or lower step, in order of time; a foot's first contact ends no stride."""
     feet = [FootClimbs(foot.contact_s, foot.length_m, foot.climb_m) for foot in way.feet.values()]
     found = []
     for side, foot, ways in zip(way.feet, feet, on_stairs(feet, are_declared=are_declared), strict=True):
@@ -166,13 +143,7 @@ def stairs_in(way: BodyWay, start_s: float, end_s: float, *, are_declared: bool)
 
 
 def origin_of(way: BodyWay, start_s: float) -> float:
-    """Where the way begins: where the patient stood, if the clock starts with the first contact.
-
-    Returns
-    -------
-    float
-        Metres along the way.
-    """
+    """Give where the way begins, in metres: where the patient stood if the first contact starts the clock."""
     first_s, left_s = start_of(way)
     return way.way_at(left_s if start_s == first_s else start_s)
 

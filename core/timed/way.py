@@ -53,11 +53,8 @@ class FootSteps:
 class BodyWay:
     """The body's way on an even clock.
 
-    Attributes
-    ----------
-    time_s, way_m, heading_rad : (n,)
-        The way with its turns, the heading to the left, from the first sample on; of the foot with samples where
-        the other is silent.
+    `time_s`, `way_m`, `heading_rad`: (n,): the way with its turns, the heading to the left, from the first sample on;
+    of the foot with samples where the other is silent.
     """
 
     time_s: FloatArray
@@ -128,13 +125,7 @@ class ReceivedFoot:
 
 
 def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
-    """The body's way over a recording of up to a quarter of an hour; without foot sensors it has no samples.
-
-    Returns
-    -------
-    BodyWay
-        Seconds on the recording's clock, metres, radians.
-    """
+    """Give the body's way, of up to a quarter of an hour; without foot sensors it has no samples."""
     block = tracks.blocks(recording)[0]
     feet: dict[Side, ReceivedFoot] = {}
     for side in Side:
@@ -182,7 +173,9 @@ def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> B
         silences += _silences(foot, start_s, end_s)
         speeds.append(speed)
         turnings.append(turning)
-    return BodyWay(time_s, _smooth(_total(speeds), steps), _total(turnings), steps, tuple(silences))
+    # without the rise and fall of speed in each step, which the body has less of than the feet
+    way_m = moving_mean(_total(speeds), max(1, round(0.5 * _usual_stride_s(steps) / STEP_S)))
+    return BodyWay(time_s, way_m, _total(turnings), steps, tuple(silences))
 
 
 def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
@@ -245,11 +238,6 @@ def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
     return np.asarray(chord_m / np.sinc(half / np.pi))
 
 
-def _smooth(way_m: FloatArray, feet: Mapping[Side, FootSteps]) -> FloatArray:
-    """The way (n,) without the rise and fall of speed in each step, which the body has less of than the feet."""
-    return moving_mean(way_m, max(1, round(0.5 * _usual_stride_s(feet) / STEP_S)))
-
-
 def _usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
     times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in feet.values())])
     return float(np.median(times[times < MAX_STRIDE_S])) if np.any(times < MAX_STRIDE_S) else USUAL_STRIDE_S
@@ -295,13 +283,7 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
 
 
 def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
-    """Wherever both feet stood for a second between two steps.
-
-    Returns
-    -------
-    tuple of (float, float)
-        From contact to toe-off, seconds.
-    """
+    """Give contact to toe-off, in s, wherever both feet stood for a second between two steps."""
     swings = way.swings_s
     landed = np.maximum.accumulate(swings[:, 1]) if len(swings) else np.empty(0)
     found = []
@@ -313,13 +295,7 @@ def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
 
 
 def start_of(way: BodyWay) -> tuple[float, float]:
-    """The start of a walk: the first contact after both feet stood for a second.
-
-    Returns
-    -------
-    float, float
-        That contact and the toe-off of its swing, seconds; NaN where there is none.
-    """
+    """Give the first contact after both feet stood for 1 s and its swing's toe-off, in s; NaN without one."""
     swings = way.swings_s
     if len(swings):
         landed = np.concatenate([way.time_s[:1], np.maximum.accumulate(swings[:-1, 1])])
@@ -331,12 +307,6 @@ def start_of(way: BodyWay) -> tuple[float, float]:
 
 
 def laps_between(turns: tuple[Turn, ...], start_s: float, end_s: float) -> tuple[tuple[float, float], ...]:
-    """The pieces of a test from turn to turn, the last one as far as it came.
-
-    Returns
-    -------
-    tuple of (float, float)
-        From the middle of one turn to that of the next, seconds.
-    """
+    """Give the laps from the middle of one turn to the next, in s, the last one as far as it came."""
     inner = [turn.middle_s for turn in turns if turn.is_about and start_s < turn.middle_s < end_s]
     return tuple(pairwise([start_s, *inner, end_s]))

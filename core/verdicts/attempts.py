@@ -20,13 +20,7 @@ def _sigma(column: str) -> Sigma | None:
 
 
 def error_between_visits(column: str) -> float:
-    """What a change of a test's figure has to exceed; NaN where no error is known.
-
-    Returns
-    -------
-    float
-        In the unit of the column.
-    """
+    """Give what a change of a test's figure has to exceed, in the column's unit; NaN where it is not known."""
     sigma = _sigma(column)
     return Z95 * math.sqrt(2) * sigma.of(0.0) if sigma is not None else math.nan  # of a speed it is a constant
 
@@ -39,20 +33,7 @@ def compare_attempts(
     *,
     is_chosen_before: bool = False,
 ) -> Difference:
-    """A test's figure at one visit less that at another.
-
-    Parameters
-    ----------
-    assessments
-        What may be stated about each of the two; where either is not reported there is no difference.
-    is_chosen_before
-        The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
-
-    Returns
-    -------
-    Difference
-        In the unit of the column.
-    """
+    """Subtract a test's figure at one visit from another's; no difference where either is not reported."""
     difference = one.mean - other.mean
     if any(not found.is_reported for found in assessments) or not math.isfinite(difference):
         return Difference(math.nan, math.nan, Judgement.NOT_REPORTED)

@@ -1,6 +1,7 @@
 """The gates that a recording passes: from what was measured to a verdict per joint, leg and kind of quantity.
 
-Every limit is in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
+Limits are in `LIMITS`, each with its reason; those of clocks and signs stand where these are measured. A reason in a
+verdict carries the value found beside its limit.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -30,7 +31,7 @@ from core.verdicts.model import (
     assess,
 )
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
-from core.verdicts.sample_gates import clipped, lost, off_rate
+from core.verdicts.sample_gates import clipped, closed, known_or_none, lost, off_rate
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,15 +77,7 @@ MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say no
 def verdicts_of(
     recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], stiff_sides: Collection[Side]
 ) -> Verdicts:
-    """The verdicts of one recording, from its angles, strides and calibration.
-
-    Parameters
-    ----------
-    calibrated
-        The calibrations that `recording` was measured with.
-    stiff_sides
-        Where a joint that hardly bends is no wonder.
-    """
+    """Make one recording's verdicts; stiff sides are those where a joint that hardly bends is expected."""
     joints = {
         joint: _joint_verdicts(recording, joint, calibrated[joint], joint.side in stiff_sides)
         for joint in recording.joints
@@ -177,7 +170,7 @@ def _worn_hips(recording: RecordingAnalysis) -> list[Joint]:
 
 def _heading(found: HipIdentification) -> Iterator[GateReason]:
     """Without a sure heading between pelvis and thigh there is flexion, against the vertical, but no abduction."""
-    sd_deg = _known(float(np.rad2deg(found.heading_sd_rad)))
+    sd_deg = known_or_none(float(np.rad2deg(found.heading_sd_rad)))
     if sd_deg is None or sd_deg > LIMITS.hip_heading_sd_deg:
         yield GateReason("hip_heading", Verdict.NOT_REPORTED, sd_deg, LIMITS.hip_heading_sd_deg, "deg")
 
@@ -189,15 +182,9 @@ def _adjacent(found: HipIdentification) -> Iterator[GateReason]:
     if found.disagreement >= LIMITS.hip_disagreement:
         yield GateReason("hip_disagreement", Verdict.NOT_REPORTED, found.disagreement, LIMITS.hip_disagreement)
     for centre_m in (found.centre_proximal_m, found.centre_distal_m):
-        least, most = LIMITS.hip_centre_m
-        length_m = float(np.linalg.norm(centre_m))
-        if not least <= length_m <= most:
-            yield GateReason("hip_centre", Verdict.NOT_REPORTED, length_m, least if length_m < least else most, "m")
+        yield from _outside("hip_centre", float(np.linalg.norm(centre_m)), LIMITS.hip_centre_m, "m")
     if found.centres_apart_m is not None:
-        least, most = LIMITS.hips_apart_m
-        if not least <= found.centres_apart_m <= most:
-            limit = least if found.centres_apart_m < least else most
-            yield GateReason("hips_apart", Verdict.NOT_REPORTED, found.centres_apart_m, limit, "m")
+        yield from _outside("hips_apart", found.centres_apart_m, LIMITS.hips_apart_m, "m")
 
 
 def _pelvis(recording: RecordingAnalysis) -> Iterator[GateReason]:
@@ -272,11 +259,7 @@ def _pairing(found: JointCalibration) -> Iterator[GateReason]:
 
 def _axis(found: JointCalibration) -> Iterator[GateReason]:
     sd_deg = None if found.axis_sd_rad is None else float(np.rad2deg(found.axis_sd_rad))
-    care, most = LIMITS.axis_sd_deg
-    if sd_deg is None or not sd_deg <= most:
-        yield GateReason("axis", Verdict.NOT_REPORTED, _known(sd_deg), most, "deg")
-    elif sd_deg > care:
-        yield GateReason("axis", Verdict.CARE, sd_deg, care, "deg")
+    yield from closed("axis", sd_deg, LIMITS.axis_sd_deg, "deg")
 
 
 def _axis_halves(recording: RecordingAnalysis, joint: Joint) -> Iterator[GateReason]:
@@ -285,23 +268,14 @@ def _axis_halves(recording: RecordingAnalysis, joint: Joint) -> Iterator[GateRea
     if found is None:
         return
     gate = "axis_motions" if found.is_free_motion else "axis_halves"
-    care, most = LIMITS.axis_motions_deg if found.is_free_motion else LIMITS.axis_halves_deg
-    apart_deg = float(np.rad2deg(found.apart_rad))
-    if apart_deg > most:
-        yield GateReason(gate, Verdict.NOT_REPORTED, apart_deg, most, "deg", joint=joint)
-    elif apart_deg > care:
-        yield GateReason(gate, Verdict.CARE, apart_deg, care, "deg", joint=joint)
+    limits = LIMITS.axis_motions_deg if found.is_free_motion else LIMITS.axis_halves_deg
+    yield from closed(gate, float(np.rad2deg(found.apart_rad)), limits, "deg", joint)
 
 
 def _lag(found: JointCalibration) -> Iterator[GateReason]:
-    care, most = LIMITS.lag_sd_ms
-    sd_ms = None if found.lag_sd_s is None else 1000.0 * found.lag_sd_s
-    if found.is_clock_shared:
-        return
-    if found.is_lag_at_border or sd_ms is None or not sd_ms <= most:
-        yield GateReason("lag", Verdict.NOT_REPORTED, None if found.is_lag_at_border else _known(sd_ms), most, "ms")
-    elif sd_ms > care:
-        yield GateReason("lag", Verdict.CARE, sd_ms, care, "ms")
+    if not found.is_clock_shared:
+        sd_ms = None if found.is_lag_at_border or found.lag_sd_s is None else 1000.0 * found.lag_sd_s
+        yield from closed("lag", sd_ms, LIMITS.lag_sd_ms, "ms")
 
 
 def _sign(found: JointCalibration) -> Iterator[GateReason]:
@@ -385,11 +359,8 @@ def _drift(values_deg: FloatArray) -> Iterator[GateReason]:
 def _events(gait: SideGait) -> Iterator[GateReason]:
     stance = gait.strides.stance_percent[gait.strides.is_used]
     stance = stance[np.isfinite(stance)]
-    least, most = LIMITS.stance_percent
     if len(stance):
-        usual = float(np.median(stance))
-        if not least <= usual <= most:
-            yield GateReason("events", Verdict.NOT_REPORTED, usual, least if usual < least else most, "%")
+        yield from _outside("events", float(np.median(stance)), LIMITS.stance_percent, "%")
 
 
 def _steady_times(gait: SideGait) -> Iterator[GateReason]:
@@ -417,10 +388,8 @@ def _equal_lengths(recording: RecordingAnalysis) -> Iterator[GateReason]:
 def _speed(gait: SideGait) -> Iterator[GateReason]:
     speed = gait.strides.speed_m_s[gait.strides.is_used]
     speed = speed[np.isfinite(speed)]
-    least, most = LIMITS.speed_m_s
-    if len(speed) and not least <= float(np.mean(speed)) <= most:
-        value = float(np.mean(speed))
-        yield GateReason("speed", Verdict.NOT_REPORTED, value, least if value < least else most, "m/s")
+    if len(speed):
+        yield from _outside("speed", float(np.mean(speed)), LIMITS.speed_m_s, "m/s")
 
 
 # both legs
@@ -440,7 +409,7 @@ def _between(recording: RecordingAnalysis) -> Assessment:
         return assess([GateReason("step_share", verdict, clocks.value, float(limit), "%")])
     if clocks.gate is ClockGate.UNKNOWN and recording.leg_clock is not None:
         return assess([GateReason("leg_clock", verdict)])
-    known = _known(clocks.value)
+    known = known_or_none(clocks.value)
     value_ms = None if known is None or clocks.gate is ClockGate.UNKNOWN else 1000.0 * known
     return assess([GateReason("clocks", verdict, value_ms, 1000.0 * clocks.limit, "ms")])
 
@@ -471,11 +440,14 @@ def _steady(values: FloatArray, limit: float, unit: str, gate: str = "halves") -
         yield GateReason("odd_even", Verdict.CARE, ratio, LIMITS.odd_even_ratio)
 
 
+def _outside(gate: str, value: float, limits: tuple[float, float], unit: str) -> Iterator[GateReason]:
+    """Nothing is reported of a value that no body has."""
+    least, most = limits
+    if not least <= value <= most:
+        yield GateReason(gate, Verdict.NOT_REPORTED, value, least if value < least else most, unit)
+
+
 def _below(margin: float | None, limit: float) -> float | None:
     """The margin where it is what closed the gate: beyond its limit it was something else, and no figure shows it."""
-    known = _known(margin)
+    known = known_or_none(margin)
     return known if known is not None and known < limit else None
-
-
-def _known(value: float | None) -> float | None:
-    return float(value) if value is not None and np.isfinite(value) else None

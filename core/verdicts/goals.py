@@ -37,29 +37,13 @@ class GoalStanding(StrEnum):
 
 
 def beyond(goal: Goal, value: float) -> float:
-    """By how much a value is beyond its goal, in the goal's unit; negative where it is short of it.
-
-    Between the legs the size of the difference counts, whichever leg has more.
-
-    Returns
-    -------
-    float
-        In the unit of the goal's column.
-    """
+    """Give how far a value is beyond its goal, negative if short; between legs the difference's size counts."""
     measured = abs(value) if goal.of is GoalOf.BETWEEN else value
     return goal.value - measured if goal.is_at_most else measured - goal.value
 
 
 def standing(goal: Goal, value: float, error: float) -> GoalStanding:
-    """How a value compares with its goal.
-
-    Parameters
-    ----------
-    value
-        In the unit of the goal's column; NaN where none may be reported.
-    error
-        What a difference has to exceed to be real, in the same unit; NaN where it is not known.
-    """
+    """Compare a value with its goal; NaN value: none may be reported, NaN error: not known."""
     if not math.isfinite(value):
         return GoalStanding.UNKNOWN
     if not (math.isfinite(error) and error > 0):
@@ -71,18 +55,7 @@ def standing(goal: Goal, value: float, error: float) -> GoalStanding:
 
 
 def share_at_goal(goal: Goal, value: float, error: float) -> float:
-    """In how many of 1 such measurements the true value is at the goal or beyond it, with a flat prior.
-
-    Parameters
-    ----------
-    error
-        What a difference of two means as sure has to exceed; the value's own SD is that over 1.96 sqrt(2).
-
-    Returns
-    -------
-    float
-        0 to 1; NaN where the error is not known.
-    """
+    """Give the share (0 to 1) at or beyond the goal, flat prior; the value's SD is `error` / (1.96 sqrt(2))."""
     if not (math.isfinite(value) and error > 0):
         return math.nan
     return NormalDist().cdf(
@@ -91,11 +64,5 @@ def share_at_goal(goal: Goal, value: float, error: float) -> float:
 
 
 def error_of_visit(column: str, found: MeanOfStrides, speed_m_s: float = math.nan) -> float:
-    """What a change between visits has to exceed from a mean as sure as this one; NaN where no error is known.
-
-    Returns
-    -------
-    float
-        In the unit of the column.
-    """
+    """Give what a change between visits has to exceed, from a mean as sure as this one; NaN if not known."""
     return 2.0 * whisker(column, ComparisonKind.VISITS, found, speed_m_s)

@@ -16,17 +16,7 @@ def assess_target(
     calibration: Mapping[Joint, JointCalibration],
     prosthetic_sides: Collection[Side],
 ) -> Assessment:
-    """What may be stated about a measure of one leg; a target may be set where its figure may be reported.
-
-    Parameters
-    ----------
-    worn
-        Sites with a sensor.
-    calibration
-        In force, of the joints that have one.
-    prosthetic_sides
-        Whose foot rolls on where a heel would rise: its stance is compared with nothing.
-    """
+    """Give what may be stated about a leg's measure; a prosthetic foot's stance is compared with nothing."""
     feet = {one.leg_side for one in worn if one.segment is Segment.FOOT}
     if measure is TargetMeasure.CADENCE:
         return READ if feet else NOT_MEASURED

@@ -150,13 +150,7 @@ class Difference:
         return abs(self.difference) / self.error if self.is_judged else 0.0
 
     def share_of_at_least(self, limit: float) -> float:
-        """In how many of 1 such measurements the true difference, in its own direction, is `limit` or more.
-
-        Returns
-        -------
-        float
-            0 to 1 (with a flat prior); NaN where it is not judged.
-        """
+        """Give the share (0 to 1, flat prior) with difference at least `limit`; NaN where it is not judged."""
         if not self.is_judged:
             return math.nan
         return NormalDist().cdf((abs(self.difference) - limit) / (self.error / Z95))
@@ -172,24 +166,7 @@ def compare(
     speeds_m_s: Speeds = UNKNOWN,
     is_chosen_before: bool = False,
 ) -> Difference:
-    """`one` less `other`, where it is likely to be, and what it exceeds.
-
-    Parameters
-    ----------
-    name
-        The column of strides.csv.
-    assessments
-        What may be stated about each of the two; where either is not reported there is no difference.
-    speeds_m_s
-        Of the walks of both: slow walks repeat less well, and what another speed makes is taken out beside.
-    is_chosen_before
-        The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
-
-    Returns
-    -------
-    Difference
-        In the unit of the column.
-    """
+    """Subtract `other` from `one`; no difference where either is not reported in `assessments`."""
     nothing = math.nan
     if any(not found.is_reported for found in assessments):
         return Difference(nothing, nothing, Judgement.NOT_REPORTED)
@@ -228,13 +205,7 @@ def compare(
 
 
 def least_error(name: str, kind: ComparisonKind, mean: float) -> tuple[float, bool]:
-    """What two means of this size differ by within error, however sure each is, and whether its source is verified.
-
-    Returns
-    -------
-    float, bool
-        In the unit of the column, NaN where no figure is known.
-    """
+    """Give what two means of this size differ by within error, NaN if unknown, and if its source is verified."""
     sigma = sigma_of(name, kind)
     if sigma is None:
         return math.nan, True
@@ -268,13 +239,7 @@ def _by_speed(
 
 
 def whisker(name: str, kind: ComparisonKind, found: MeanOfStrides, speed_m_s: float = math.nan) -> float:
-    """Half of the error of a difference from a mean as sure: whiskers that lie apart differ by more than the error.
-
-    Returns
-    -------
-    float
-        In the unit of the column.
-    """
+    """Give half the error of a difference from a mean as sure; whiskers that lie apart differ by more."""
     sigma = sigma_of(name, kind)
     if sigma is None or found.n < MIN_STRIDES_FOR_SD:
         return math.nan

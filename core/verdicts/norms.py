@@ -91,13 +91,7 @@ class ReferenceValues:
     values: Mapping[str, MeanAndSd]
 
     def judged(self, parameter: str) -> MeanAndSd:
-        """Mean and sd of a parameter, the sd widened by what our own measurement adds (OWN_SD).
-
-        Returns
-        -------
-        MeanAndSd
-            In the parameter's unit.
-        """
+        """Give mean and sd of a parameter, the sd widened by what our own measurement adds (OWN_SD)."""
         found = self.values[parameter]
         return MeanAndSd(found.mean, math.hypot(found.sd, *OWN_SD.get(parameter, ())), found.n)
 
@@ -117,13 +111,7 @@ def _source(derivation: str) -> str:
 
 
 def read_curves(of_knee_and_ankle: str, of_hip: str) -> ReferenceCurves:
-    """From the texts of fukuchi2018_young_treadmill_comfortable_knee_ankle.csv and ..._hip.csv.
-
-    Raises
-    ------
-    ValueError
-        A table has not 101 rows.
-    """
+    """Read the texts of fukuchi2018_young_treadmill_comfortable_knee_ankle.csv and ..._hip.csv."""
     rows, hip_rows = _table(of_knee_and_ankle), _table(of_hip)
     for one in (rows, hip_rows):
         if len(one) != POINTS:
@@ -197,24 +185,12 @@ class Bands:
 
 
 def froude_number(speed_m_s: float, leg_length_m: float) -> float:
-    """Speed relative to the length of the leg, so that short and tall people who walk alike have one number.
-
-    Returns
-    -------
-    float
-        Without unit.
-    """
+    """Give speed relative to leg length, without unit: short and tall people who walk alike have one number."""
     return speed_m_s**2 / (GRAVITY_M_S2 * leg_length_m)
 
 
 def class_of_speed(speed_m_s: float, height_m: float | None) -> str | None:
-    """Slow, comfortable or fast; None where without a height the legs of adults leave both open.
-
-    Returns
-    -------
-    str or None
-        The class's name in the reference group.
-    """
+    """Give slow, comfortable or fast; None where without a height adult legs leave it open."""
     lengths_m = LEG_LENGTHS_M if height_m is None else (LEG_PER_HEIGHT * height_m,)
     found = {_class_of(froude_number(speed_m_s, length_m)) for length_m in lengths_m}
     return found.pop() if len(found) == 1 else None
@@ -223,13 +199,7 @@ def class_of_speed(speed_m_s: float, height_m: float | None) -> str | None:
 def choose_bands(
     curves: ReferenceCurves, classes: tuple[ReferenceValues, ...], speed_m_s: float, who: AgeAndHeight
 ) -> Bands:
-    """The bands of adults who walked as fast for their legs; of the curves those near in speed as well.
-
-    Returns
-    -------
-    Bands
-        Degrees over percent of the stride, and values in their own units.
-    """
+    """Choose the bands of adults who walked as fast for their legs; curves also near in speed."""
     if who.age_years is not None and who.age_years < ADULT_FROM_YEARS:
         return Bands(None, None, NoBand.CHILD, NoBand.CHILD)
     if not np.isfinite(speed_m_s):
@@ -246,43 +216,15 @@ def choose_bands(
 
 
 def height_offset_deg(curve_deg: FloatArray, group_mean_deg: FloatArray) -> float:
-    """How much higher than the group's a curve (101,) lies as a whole: the median of their difference.
-
-    Parameters
-    ----------
-    curve_deg, group_mean_deg : (101,)
-        Mean cycles.
-
-    Returns
-    -------
-    float
-        Degrees.
-    """
+    """Give the median by which a curve (101,) lies above its group's: its height as a whole."""
     return float(np.median(curve_deg - group_mean_deg))
 
 
 def peak_away_sd(
     value_deg: float, curve_deg: FloatArray, band: tuple[FloatArray, FloatArray], at: int, kind: str
 ) -> float:
-    """How many SD a peak lies from a band that is laid at the height of its curve.
-
-    The zero moves a whole curve, and laboratories differ by 5 to 7 deg in theirs: only what is left describes the
-    walk. Since we read more knee flexion than optical markers, a knee lies as far as it does both as measured and
-    divided by what we read too much.
-
-    Parameters
-    ----------
-    curve_deg : (101,)
-        The mean curve that the peak is of.
-    band
-        Mean and SD of the group (101,), degrees.
-    at
-        Percent of the stride where the group's mean has this peak.
-
-    Returns
-    -------
-    float
-        Standard deviations of the group.
+    """Give how many group SD a peak lies from a band at its curve's height: only the shape counts.
+    A knee takes the smaller of as measured and divided by KNEE_OVERREAD, 0 where their signs differ.
     """
     mean_deg, sd_deg = band
 

@@ -48,11 +48,7 @@ class OwnEstimate(NamedTuple):
 
     @property
     def judged_by(self) -> float:
-        """What differences are judged by: never less than half of the upper limit.
-
-        Few people, or few strides, may show no difference beyond chance; that is not to be taken for none. The limits
-        of 20 people leave every figure as it is.
-        """
+        """Give what differences are judged by: at least half of the upper limit, as few people may show none."""
         return max(self.value, 0.5 * self.high)
 
     def holds(self, value: float) -> bool:
@@ -92,10 +88,8 @@ class OwnFigures:
 
     @property
     def figures(self) -> ErrorFigures:
-        """What differences are judged by where this study is chosen; as published where it has no figure.
-
-        Attaching sensors again never counts for less than leaving them on, and a study of one day not for less between
-        visits than is published: it has seen no second day. Slow walks never count for less than is published.
+        """Give the figures that differences are judged by, published ones where the study has none.
+        Never below: slow walks and one-day visits as published, re-attaching as leaving sensors on.
         """
         study = OwnStudy(self.people, self.days[1])
         return ErrorFigures(
@@ -168,13 +162,7 @@ def figures_in_json(own: OwnFigures) -> dict[str, Any]:
 
 
 def figures_from_json(content: object) -> OwnFigures:
-    """Read what `figures_in_json` gave; quantities that this version does not know are left out.
-
-    Raises
-    ------
-    ValueError
-        It is no such file, or a figure is none.
-    """
+    """Read `figures_in_json` output, leaving unknown quantities out; ValueError for a bad file or figure."""
     try:
         return _figures_from(content)
     except (KeyError, TypeError, AttributeError) as error:

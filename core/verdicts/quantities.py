@@ -42,10 +42,7 @@ class SideMean:
 
 
 def joint_of(name: str, side: Side) -> Joint | None:
-    """Whose angle a column of strides.csv or fitting.csv contains; None for time, distance and the foot alone.
-
-    Thigh and shank lean about the knee's axis, so what holds of the knee holds of them.
-    """
+    """Give the joint of a column's angle; thigh and shank count as knee, None for time, distance, foot alone."""
     of_kind = {"hip": hip_of, "knee": knee_of, "ankle": ankle_of, "shank": knee_of, "thigh": knee_of}
     found = of_kind.get(name.split("_")[0])
     return found(side) if found is not None else None
@@ -76,11 +73,7 @@ def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
 
 
 def assessment_of_both(verdicts: Verdicts, name: str) -> Assessment:
-    """What may be stated about cadence, double support and speed, from the legs that were measured.
-
-    Double support, as the sum of both legs' stances less a stride, needs no common clock; but it adds up what is in
-    doubt about four events, so the timing of both legs has to be beyond doubt.
-    """
+    """Give what may be stated about cadence, double support and speed, by the legs that were measured."""
     legs = [verdicts.leg(side) for side in Side if side in verdicts.legs]
     if not legs:
         return together([verdicts.leg(Side.LEFT).timing])
@@ -94,13 +87,7 @@ def assessment_of_both(verdicts: Verdicts, name: str) -> Assessment:
 
 
 def raw_values(gait: SideGait, name: str) -> FloatArray:
-    """One column of strides.csv (k,), angles in degrees, whatever may be stated about it; NaN where not known.
-
-    Returns
-    -------
-    (k,)
-        One per stride, in the unit that the name ends with.
-    """
+    """Give a column of strides.csv (k,), angles in degrees, whatever may be stated; NaN where not known."""
     values = gait.parameters.get(name.removesuffix("_deg") + "_rad" if name.endswith("_deg") else name)
     if values is None:
         return np.full(len(gait.strides), np.nan)
@@ -108,13 +95,7 @@ def raw_values(gait: SideGait, name: str) -> FloatArray:
 
 
 def values_of(recording: RecordingAnalysis, side: Side, name: str) -> FloatArray:
-    """As `raw_values`; NaN throughout where the figure is not reported.
-
-    Returns
-    -------
-    (k,)
-        One per stride, in the unit that the name ends with.
-    """
+    """Give `raw_values` (k,), NaN throughout where the figure is not reported."""
     gait = recording.gait[side]
     if not assessment_of(recording.verdicts, side, name).is_reported:
         return np.full(len(gait.strides), np.nan)
@@ -128,13 +109,7 @@ def side_mean(recording: RecordingAnalysis, side: Side, name: str) -> SideMean:
 
 
 def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> FloatArray:
-    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none or it is not reported.
-
-    Returns
-    -------
-    (k,)
-        Percent of the stride.
-    """
+    """Give when in each stride (k,) the column's peak comes, percent; NaN where none or not reported."""
     gait, joint = recording.gait[side], joint_of(column, side)
     if joint is None or joint not in gait.cycles:
         return np.full(len(gait.strides), np.nan)
@@ -145,13 +120,7 @@ def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> Float
 
 
 def hip_peaks_percent(recording: RecordingAnalysis, side: Side) -> tuple[FloatArray, FloatArray]:
-    """When in each stride (k,) the hip is most flexed, and when most extended; NaN where not known or not reported.
-
-    Returns
-    -------
-    (k,) and (k,)
-        Percent of the stride.
-    """
+    """Give when the hip is most flexed and most extended, percent of each stride (k,); NaN where not reported."""
     gait, found = recording.gait[side], recording.verdicts.joint(hip_of(side))
     nothing = np.full(len(gait.strides), np.nan)
     cycles = gait.cycles.get(hip_of(side))
@@ -173,22 +142,13 @@ def abduction_curve(recording: RecordingAnalysis, side: Side) -> MeanCycle:
 
 
 def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
-    """The joint's angle over the strides used, (k, 101), radians: evidence, whatever may be stated about it.
-
-    Returns
-    -------
-    (k, 101)
-        rad, clinical sign.
-    """
+    """Give the joint's angle over the strides used, (k, 101), rad, clinical sign, whatever may be stated."""
     gait = recording.gait[joint.side]
     return gait.cycles[joint][gait.strides.is_used] if joint in gait.cycles else np.empty((0, POINTS))
 
 
 def mean_curve(recording: RecordingAnalysis, joint: Joint) -> MeanCycle:
-    """The joint's mean over the strides used, radians; NaN where its shape or its sign is not reported.
-
-    Its height holds only where that is reported.
-    """
+    """Average the joint's angle over the strides used; NaN where shape or sign is not reported."""
     found = mean_cycle(used_cycles(recording, joint))
     stated = recording.verdicts.joint(joint)
     if together((stated.shape, stated.sign)).is_reported:

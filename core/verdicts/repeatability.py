@@ -68,13 +68,7 @@ class TooFewPeopleError(Exception):
 
 
 def repeatability_of(people: Iterable[Person]) -> OwnFigures:
-    """What attaching the sensors again makes of each kind of quantity, and what healthy legs differ by.
-
-    Raises
-    ------
-    TooFewPeopleError
-        No quantity was measured in two attachments of at least MIN_PEOPLE.
-    """
+    """Estimate error figures of re-attaching sensors and of healthy legs; TooFewPeopleError below MIN_PEOPLE."""
     repeated = [person for person in people if any(len(alike) > 1 for alike in _alike(person))]
     sigmas = {kind: own for kind in COLUMNS if (own := _sigma(kind, repeated)) is not None}
     if not sigmas:

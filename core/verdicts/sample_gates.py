@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator
 
 import numpy as np
 
-from core.body import Side, Site
+from core.body import Joint, Side, Site
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.signal.reception import LEAST_PAUSE_S, is_half
@@ -15,17 +15,14 @@ Limits = tuple[float, float]
 
 
 def lost(recording: RecordingAnalysis, limits: Limits, *sites: Site) -> Iterator[GateReason]:
-    """How much of the strides used, of either sensor, lies in gaps too long to be bridged in silence.
-
-    A gap in which whole strides are missing leaves the others as they are.
-    """
+    """Check how much of the strides used lies in gaps too long to bridge; gaps of whole strides do not count."""
     percent = 0.0
     for site in (one for one in sites if one in recording.received):
         found = recording.received[site]
         times_s = _used_s(recording, site) if recording.gait else np.array([found.span_s])
         gaps_s = found.gaps_s[found.gaps_s[:, 1] - found.gaps_s[:, 0] < LEAST_PAUSE_S]
         percent = max(percent, _share_percent(gaps_s, times_s))
-    yield from _closed("loss", percent, limits)
+    yield from closed("loss", percent, limits, "%")
 
 
 def clipped(
@@ -40,14 +37,14 @@ def clipped(
         if len(times_s):
             holds = np.searchsorted(at_s, times_s[:, 1]) > np.searchsorted(at_s, times_s[:, 0])
             percent = max(percent, 100.0 * float(np.mean(holds)))
-    yield from _closed("clipping", percent, limits)
+    yield from closed("clipping", percent, limits, "%")
 
 
 def off_rate(recording: RecordingAnalysis, limits: Limits, *sites: Site) -> Iterator[GateReason]:
     """Whether samples came at the rate that a sensor was set to."""
     known = [recording.received[site].rate_percent for site in sites if site in recording.received]
     percent = max((one for one in known if one is not None), key=lambda one: abs(one - 100.0), default=100.0)
-    for reason in _closed("every_second" if is_half(percent) else "rate", abs(percent - 100.0), limits):
+    for reason in closed("every_second" if is_half(percent) else "rate", abs(percent - 100.0), limits, "%"):
         limit = 100.0 + float(np.copysign(limits[reason.verdict is Verdict.NOT_REPORTED], percent - 100.0))
         yield GateReason(reason.gate, reason.verdict, percent, limit, "%")
 
@@ -71,9 +68,17 @@ def _share_percent(gaps_s: FloatArray, times_s: FloatArray) -> float:
     return 100.0 * float(np.sum(until_last - until_first)) / whole_s
 
 
-def _closed(gate: str, percent: float, limits: Limits) -> Iterator[GateReason]:
+def closed(
+    gate: str, value: float | None, limits: Limits, unit: str, joint: Joint | None = None
+) -> Iterator[GateReason]:
+    """What a value beyond the first or the second limit closes; one that is not known closes the second."""
     care, most = limits
-    if percent > most:
-        yield GateReason(gate, Verdict.NOT_REPORTED, percent, most, "%")
-    elif percent > care:
-        yield GateReason(gate, Verdict.CARE, percent, care, "%")
+    if value is None or not value <= most:
+        yield GateReason(gate, Verdict.NOT_REPORTED, known_or_none(value), most, unit, joint=joint)
+    elif value > care:
+        yield GateReason(gate, Verdict.CARE, value, care, unit, joint=joint)
+
+
+def known_or_none(value: float | None) -> float | None:
+    """None where a value is not known or NaN."""
+    return float(value) if value is not None and np.isfinite(value) else None

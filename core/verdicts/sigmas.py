@@ -59,13 +59,7 @@ class Sigma:
         return self.source.is_verified
 
     def of(self, mean: float, speed_m_s: float = math.nan) -> float:
-        """For a mean of this size, walked at this speed; a speed that is not known is not taken as slow.
-
-        Returns
-        -------
-        float
-            In the unit of the mean.
-        """
+        """Give sigma for a mean of this size and speed; an unknown speed is not taken as slow."""
         is_slow = self.slow is not None and speed_m_s < SLOW_M_S
         constant, share = self.slow if is_slow and self.slow is not None else (self.constant, self.share_percent)
         found = math.hypot(constant, 0.01 * share * mean)
@@ -156,13 +150,7 @@ def sigma_of(column: str, kind: ComparisonKind) -> Sigma | None:
 
 
 def healthy_between_legs(column: str) -> float:
-    """What 95 of 100 healthy people's legs differ by less, less what chance makes of it; NaN where not known.
-
-    Returns
-    -------
-    float
-        In the unit of the column.
-    """
+    """Give what 95 of 100 healthy people's legs differ by less, less chance; NaN where not known."""
     return _in_use.healthy.get(column, math.nan)
 
 
@@ -176,13 +164,7 @@ class SpeedSlope:
     sigma: float | None = None
 
     def at(self, speed_m_s: float) -> float:
-        """Per m/s, about this speed.
-
-        Returns
-        -------
-        float
-            In the quantity's unit per m/s.
-        """
+        """Give the slope about this speed, in the quantity's unit per m/s."""
         return self.slow if speed_m_s < SLOW_M_S else self.other
 
 

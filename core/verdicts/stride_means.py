@@ -17,27 +17,15 @@ MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves show
 
 @dataclass(frozen=True, slots=True)
 class MeanOfStrides:
-    """A mean over strides and what is known of its uncertainty; NaN where it is not known.
-
-    Attributes
-    ----------
-    standard_error
-        With the correlation of adjacent strides.
-    drift
-        Half of what the halves, or the thirds that lie farthest apart, differ by beyond chance.
-    clock_error
-        What the uncertainty of the lag between the joint's sensors makes of it.
-    axis_error
-        What the joint's axis makes of it, by two parts of the data that identify it each alone.
-    """
+    """A mean over strides and what is known of its uncertainty; NaN where it is not known."""
 
     mean: float
     sd: float
     n: int
-    standard_error: float
-    drift: float
-    clock_error: float = 0.0
-    axis_error: float = 0.0
+    standard_error: float  # with the correlation of adjacent strides
+    drift: float  # half of what the halves, or the thirds that lie farthest apart, differ by beyond chance
+    clock_error: float = 0.0  # what the uncertainty of the lag between the joint's sensors makes of it
+    axis_error: float = 0.0  # what the joint's axis makes of it, by two parts of the data that identify it each alone
 
     @property
     def uncertainty(self) -> float:
@@ -46,22 +34,7 @@ class MeanOfStrides:
 
 
 def mean_of_strides(values: FloatArray, clock_error: float = 0.0, axis_error: float = 0.0) -> MeanOfStrides:
-    """The mean of the finite values among (k,), in order of time, and its uncertainty.
-
-    Parameters
-    ----------
-    values : (k,)
-        In any unit, NaN where not known.
-    clock_error
-        What the uncertainty of the lag makes of the mean, in that unit.
-    axis_error
-        What the joint's axis leaves open of it, in that unit.
-
-    Returns
-    -------
-    MeanOfStrides
-        In that unit.
-    """
+    """Average finite values (k,) in order of time with their uncertainty, in their unit."""
     known = values[np.isfinite(values)]
     n = len(known)
     mean = float(np.mean(known)) if n else math.nan

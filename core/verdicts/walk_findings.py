@@ -19,13 +19,7 @@ TURN_APART_S = 1.0  # feet turn about as much later or earlier than the pelvis
 
 
 def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> list[Finding]:
-    """What the strides of both sides leave in doubt.
-
-    Parameters
-    ----------
-    sites
-        Which sensor gave the events of each side in `walk.gait`.
-    """
+    """Give what the strides of both sides leave in doubt; `sites` gave each side's events in `walk.gait`."""
     if walk.gait and not any(len(gait.strides) for gait in walk.gait.values()):
         return [Finding("no_strides", Severity.WARNING, walk.name)]
     findings: list[Finding] = []
@@ -100,13 +94,7 @@ def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
 
 
 def about_turns(walk: RecordingAnalysis) -> list[Finding]:
-    """Where the pelvis and the feet of a timed test give different turns; nothing without a sensor on the pelvis.
-
-    Returns
-    -------
-    list of Finding
-        One with how many each gives, or none.
-    """
+    """Give one finding where pelvis and feet of a timed test count other turns; none without a pelvis sensor."""
     test = walk.timed
     if test is None or walk.pelvis is None or not len(walk.time_s) or test.missing:
         return []

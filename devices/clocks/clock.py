@@ -39,18 +39,12 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ClockFit:
-    """`host_s = device_s + offset_s + skew (device_s - origin_s)`.
-
-    Attributes
-    ----------
-    residual_s
-        How far from the line the earliest arrivals of ten seconds each lie: root mean square.
-    """
+    """`host_s = device_s + offset_s + skew (device_s - origin_s)`."""
 
     origin_s: float
     offset_s: float
     skew: float
-    residual_s: float = 0.0
+    residual_s: float = 0.0  # how far from the line the earliest arrivals of ten seconds each lie: root mean square
 
     def host_s(self, device_s: FloatArray) -> FloatArray:
         """The host's seconds (n,) at the sensor's."""
@@ -58,20 +52,7 @@ class ClockFit:
 
 
 def fit_clock(device_s: FloatArray, host_s: FloatArray) -> ClockFit:
-    """Find the line below all arrivals (n,), n > 0, in any order.
-
-    Parameters
-    ----------
-    device_s : (n,)
-        By the sensor's clock.
-    host_s : (n,)
-        When each sample arrived, by the host's clock.
-
-    Returns
-    -------
-    ClockFit
-        From the sensor's seconds to the host's.
-    """
+    """Find the line below all arrivals (n,), n > 0, in any order, from the sensor's seconds to the host's."""
     order = np.argsort(device_s, kind="stable")
     x_s, late_s = device_s[order], (host_s - device_s)[order]
     origin_s, least_s = float(x_s[0]), float(late_s.min())
@@ -148,10 +129,7 @@ class ClockRuns:
         self._may_begin = True
 
     def begin(self, *, is_again: bool = False) -> None:
-        """What follows was sent after a loss or a start: a time that does not follow is a new run at once.
-
-        `is_again`: the clock is known to be another one, so that even a time that seems to follow does not.
-        """
+        """Mark a loss or start: a time that does not follow is a new run at once, with `is_again` any time."""
         self._may_begin = True
         if is_again:
             self._last.clear()
@@ -237,24 +215,7 @@ def put_in_order(
     again: Collection[int] = (),
 ) -> Ordered:
     """Order arrivals (n,) by the sensor's clock, each once, and stamp them by the host's.
-
-    Parameters
-    ----------
-    device_s : (n,)
-        By the sensor's clock, in the order of arrival.
-    host_s : (n,)
-        When each sample arrived, by the host's clock.
-    step_s
-        Between two samples, where it is known; else the usual one.
-    begins
-        Ascending indexes of arrivals before which something was lost, so that the sensor may have begun again.
-    again
-        Those of them at which it is known to have, or to run by another clock.
-
-    Returns
-    -------
-    Ordered
-        Rows in order of time, their stamps by the host's clock, and what was lost, doubled or late.
+    `begins`: arrivals, ascending, before which something was lost; `again`: where the clock is a new one.
     """
     runs, pieces = ClockRuns(), []
     for begin, end in pairwise([0, *begins, len(device_s)]):

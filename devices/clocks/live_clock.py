@@ -22,13 +22,9 @@ class LiveLine:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._bins: dict[int, tuple[float, float]] = {}
-        self._fit: ClockFit | None = None
-        self._fitted_at_s = self._shift_s = self._stamped_s = 0.0
-
-    @property
-    def fit(self) -> ClockFit | None:
+        self.fit: ClockFit | None = None
         """As it is known now; None before anything was learnt."""
-        return self._fit
+        self._fitted_at_s = self._shift_s = self._stamped_s = 0.0
 
     def stamp(self, device_s: FloatArray, host_s: float) -> FloatArray:
         """Learn from samples (n,) that arrived together, and stamp them in seconds of the host."""
@@ -42,27 +38,27 @@ class LiveLine:
         number, late_s = int(newest_s // BIN_S), host_s - newest_s
         if number not in self._bins or late_s < self._bins[number][1]:
             self._bins[number] = newest_s, late_s
-        fit = self._fit
+        fit = self.fit
         is_early = fit is None or host_s < fit.host_s(np.array([newest_s]))[0]
         if is_early or newest_s - self._fitted_at_s > 1.0:
             while len(self._bins) > self.KEPT_S / BIN_S:
                 del self._bins[min(self._bins)]
             at_s, behind_s = np.array(list(self._bins.values())).T
-            self._fit, self._fitted_at_s = fit_clock(at_s, at_s + behind_s), newest_s
+            self.fit, self._fitted_at_s = fit_clock(at_s, at_s + behind_s), newest_s
             if fit is None:
                 self._shift_s, self._stamped_s = 0.0, newest_s
             else:  # go on from what was stamped last
-                moved_s = (fit.host_s(at_s[-1:]) - self._fit.host_s(at_s[-1:]))[0]
+                moved_s = (fit.host_s(at_s[-1:]) - self.fit.host_s(at_s[-1:]))[0]
                 self._shift_s += float(moved_s)
                 if abs(self._shift_s) > self.JUMPS_S:
                     self._shift_s = 0.0
 
     def _followed(self, device_s: FloatArray) -> FloatArray:
-        assert self._fit is not None
+        assert self.fit is not None
         passed_s = np.maximum(device_s - self._stamped_s, 0.0)
         shift_s = np.sign(self._shift_s) * np.maximum(abs(self._shift_s) - self.FOLLOWS * passed_s, 0.0)
         self._shift_s, self._stamped_s = float(shift_s[-1]), max(self._stamped_s, float(device_s.max()))
-        return self._fit.host_s(device_s) + shift_s
+        return self.fit.host_s(device_s) + shift_s
 
 
 class LiveClock:

@@ -19,39 +19,16 @@ BEGUN_TOGETHER_S = 6.0  # memories whose orders nobody knows were begun within t
 
 @dataclass(frozen=True, slots=True)
 class FileOrders:
-    """When a file was ordered, in seconds since the journal was opened.
+    """When a file was ordered, in seconds since the journal was opened."""
 
-    Attributes
-    ----------
-    begun_s
-        When it was first asked to begin, and when it stated that it records.
-    ended_s
-        When it stated that it had ended.
-    """
-
-    begun_s: tuple[float, float]
-    ended_s: float
+    begun_s: tuple[float, float]  # when it was first asked to begin, and when it stated that it records
+    ended_s: float  # when it stated that it had ended
 
 
 def file_settings(
     file: RecordedFile, rate_hz: float | None, clock: str = "", orders: FileOrders | None = None
 ) -> dict[str, object]:
-    """What a `SourceInfo` holds of a fetched file.
-
-    Parameters
-    ----------
-    rate_hz
-        None: not known.
-    clock
-        The name of the clock that it shares with other sensors' files; empty: its own.
-    orders
-        None: nobody knows when it was recorded, but for the second that names it.
-
-    Returns
-    -------
-    dict
-        What JSON can hold.
-    """
+    """Give what a `SourceInfo` holds of a fetched file, for JSON; `orders` None: only the second in its name."""
     settings: dict[str, object] = {"file": [file.number, file.started_utc_s]}
     if rate_hz is not None:
         settings["rate_hz"] = rate_hz

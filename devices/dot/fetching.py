@@ -9,6 +9,7 @@ Each notification is given to who keeps it before it is looked at.
 
 import asyncio
 import struct
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -51,24 +52,14 @@ class FileLostError(SourceLostError):
 
 @dataclass(frozen=True, slots=True)
 class FetchedFile:
-    """What came of one file.
-
-    Attributes
-    ----------
-    missing
-        Numbers of samples that could not be had, below the last that came.
-    is_end_known
-        Whether the sensor stated that nothing follows the last sample.
-    is_even
-        Whether the samples' times step evenly but for what is missing.
-    """
+    """What came of one file."""
 
     sensor: str
     file: RecordedFile
     samples: int
-    missing: tuple[range, ...]
-    is_end_known: bool
-    is_even: bool
+    missing: tuple[range, ...]  # numbers of samples that could not be had, below the last that came
+    is_end_known: bool  # whether the sensor stated that nothing follows the last sample
+    is_even: bool  # whether the samples' times step evenly but for what is missing
 
     @property
     def lost(self) -> int:
@@ -80,13 +71,7 @@ class FetchedFile:
 
 
 async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
-    """Connect, trying for so long.
-
-    Raises
-    ------
-    SourceLostError
-        It is out of reach.
-    """
+    """Connect, trying for `within_s`; raises SourceLostError where the sensor is out of reach."""
     loop = asyncio.get_running_loop()
     until_s = loop.time() + within_s
     while not sensor.is_up:
@@ -100,13 +85,7 @@ async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
 
 
 def from_now_s(within_s: float) -> float:
-    """When `within_s` are over.
-
-    Returns
-    -------
-    until_s
-        By the clock of the links' thread.
-    """
+    """Give when `within_s` are over, by the clock of the links' thread."""
     return asyncio.get_running_loop().time() + within_s
 
 
@@ -150,23 +129,15 @@ class Fetching:
         self._sensor, self._file, self._keep, self._progress = sensor, file, keep, progress
         self.framer = FileFramer()
         self._about = max(about, 1)
-        self._asked: list[range] = []  # what was asked for again, each time
+        self._asked: Counter[int] = Counter()  # how often a number was asked for again
         self._ended_at, self._looks = -1, 0  # so often the end came right after this number
         self._repairs_amid = True  # until the sensor refuses it
 
     async def fetch(self) -> FetchedFile:
-        """All of it, repaired up to `REPAIRS` times.
-
-        Raises
-        ------
-        FileLostError
-            The sensor is out of reach.
-        DotRefusedError
-            It sends nothing.
-        """
+        """Fetch it all, repaired up to `REPAIRS` times; raises FileLostError, or DotRefusedError if none came."""
         stuck, cut_before = 0, self._sensor.cut_notices
         while (required := self._required()) is not None and stuck <= STUCK:
-            before = len(self.framer.samples), self._looks, len(self._asked)
+            before = len(self.framer.samples), self._looks, self._asked.total()
             try:
                 await reached(self._sensor)
                 if await self._ask(required.start):
@@ -176,7 +147,7 @@ class Fetching:
             except BaseException:
                 await self._broken_off()
                 raise
-            now = len(self.framer.samples), self._looks, len(self._asked)
+            now = len(self.framer.samples), self._looks, self._asked.total()
             stuck = 0 if now != before else stuck + 1
         found, missing = len(self.framer.samples), self.framer.missing()
         if not found:
@@ -208,11 +179,7 @@ class Fetching:
         """What to ask for next: all up to the end, and what is behind it; then what is missing. None: nothing more."""
         if self._looks < LOOKS:
             return range(max(self.framer.next - 1, 0), EVER)
-        return next((gap for gap in self.framer.missing() if self._tries(gap.start) < REPAIRS), None)
-
-    def _tries(self, number: int) -> int:
-        """How often a number was asked for again."""
-        return sum(number in asked for asked in self._asked)
+        return next((gap for gap in self.framer.missing() if self._asked[gap.start] < REPAIRS), None)
 
     async def _ask(self, number: int) -> bool:
         """Let the sensor send from this sample on, or from the first where it takes no other order."""
@@ -261,17 +228,17 @@ class Fetching:
             latest, asked_from = max(latest, number), EVER
             if lacking and await self._again(lacking.start):
                 latest, asked_from = lacking.start - 1, lacking.start
-                self._asked.append(lacking)
+                self._asked.update(lacking)
             elif lacking:
                 self._repairs_amid = False
         if required.stop != EVER:
-            self._asked.append(required)
+            self._asked.update(required)
 
     def _lacking(self, gap: range) -> range:
         """From the first of these that was left out or is damaged, if it may be asked for at once; else none."""
         lacking = (number for number in gap if number not in self.framer.samples)
         first = next(lacking, gap.stop) if self._repairs_amid else gap.stop
-        return range(first, gap.stop) if first < gap.stop and self._tries(first) < REPAIRS else range(0)
+        return range(first, gap.stop) if first < gap.stop and self._asked[first] < REPAIRS else range(0)
 
     async def _ended(self, latest: int) -> None:
         """Count how often the end came right after the last sample that is known."""

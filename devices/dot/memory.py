@@ -56,21 +56,8 @@ class Begun:
 async def record(
     sensors: Sequence[DotSensor], utc_s: int, rate_hz: int, synchronised: Collection[str] = ()
 ) -> Mapping[str, Begun]:
-    """Begin a recording in all of them, in none if one refuses; when each began, by its name.
-
-    Parameters
-    ----------
-    synchronised
-        The names of those that were: one that was switched off since is not any more.
-
-    Raises
-    ------
-    MemoryFullError
-        One has no room.
-    OwnClockError
-        One was switched off since it was synchronised.
-    SourceRefusedError
-        One records already, does not begin, has another rate, or is out of reach.
+    """Begin a recording in all sensors, in none if one refuses, and give when each began.
+    Raises MemoryFullError, OwnClockError (of `synchronised`, switched off since) or SourceRefusedError.
     """
     tried: list[DotSensor] = []
     begun: dict[str, Begun] = {}
@@ -151,15 +138,7 @@ async def _stopped_quietly(sensor: DotSensor) -> None:
 
 
 async def stop(sensor: DotSensor) -> None:
-    """End its recording, however often the link is lost over it; one that ended by itself has ended.
-
-    Raises
-    ------
-    SourceLostError
-        It is out of reach, and may still be recording.
-    DotRefusedError
-        It goes on recording.
-    """
+    """End its recording, also where it ended itself; raises SourceLostError or DotRefusedError (it goes on)."""
     for attempt in range(LINK_TRIES):
         try:
             await reached(sensor)
@@ -186,13 +165,7 @@ async def _has_ended(sensor: DotSensor, within_s: float) -> bool:
 
 
 async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
-    """What is in its memory.
-
-    Raises
-    ------
-    DotRefusedError
-        It records, or does not report whether it does.
-    """
+    """List what is in its memory; raises DotRefusedError where it records or does not report whether it does."""
     await refuse_while_recording(sensor)
     cut_before = sensor.cut_notices
     for _ in range(LISTINGS):
@@ -247,15 +220,7 @@ async def _file(sensor: DotSensor, number: int, pieces: int) -> RecordedFile | N
 
 
 async def erase_kept(sensor: DotSensor, kept: Collection[int], utc_s: int) -> None:
-    """Erase the memory, all of which was kept elsewhere: `kept` are when its files were begun, see `RecordedFile`.
-
-    Raises
-    ------
-    DotRefusedError
-        Something is in the memory that was not kept, or it is not erased.
-    SourceLostError
-        It is out of reach.
-    """
+    """Erase the memory if `kept` has all its files' starts; raises DotRefusedError or SourceLostError."""
     unkept = [file for file in await list_files(sensor) if file.started_utc_s not in kept]
     if unkept:
         raise DotRefusedError(

@@ -59,13 +59,7 @@ class DotMessage:
 
     @classmethod
     def parsed(cls, padded: bytes) -> "DotMessage":
-        """What a characteristic holds, of which only the beginning may be meant.
-
-        Raises
-        ------
-        DotMessageError
-            It is cut, or its sum is wrong.
-        """
+        """Parse a characteristic, whose end may be padding; raises DotMessageError where cut or sum wrong."""
         if len(padded) < 3 or len(padded) < padded[1] + 3:
             raise DotMessageError(f"a message of {len(padded)} bytes is cut")
         whole = bytes(padded[: padded[1] + 3])
@@ -85,13 +79,7 @@ class DotInfo:
 
     @classmethod
     def parsed(cls, data: bytes) -> "DotInfo":
-        """Of characteristic 1001.
-
-        Raises
-        ------
-        DotMessageError
-            It is too short.
-        """
+        """Parse characteristic 1001; raises DotMessageError where it is too short."""
         if len(data) < INFO_SIZE:
             raise DotMessageError(f"device information has {len(data)} bytes, expected {INFO_SIZE}")
         mac = ":".join(f"{byte:02X}" for byte in reversed(data[:MAC_SIZE]))
@@ -113,13 +101,7 @@ class DotSettings:
 
     @classmethod
     def parsed(cls, data: bytes) -> "DotSettings":
-        """Of characteristic 1002.
-
-        Raises
-        ------
-        DotMessageError
-            It is too short.
-        """
+        """Parse characteristic 1002; raises DotMessageError where it is too short."""
         if len(data) < 27:
             raise DotMessageError(f"settings have {len(data)} bytes, expected {SETTINGS_SIZE}")
         return cls(*struct.unpack_from("<HB", data, 24))
@@ -163,13 +145,7 @@ class StreamControl:
 
     @classmethod
     def parsed(cls, data: bytes) -> "StreamControl":
-        """Of characteristic 2001.
-
-        Raises
-        ------
-        DotMessageError
-            It is too short.
-        """
+        """Parse characteristic 2001; raises DotMessageError where it is too short."""
         if len(data) < 3:
             raise DotMessageError(f"the stream's control has {len(data)} bytes, expected 3")
         return cls(data[1] == 1, data[2])
@@ -289,33 +265,15 @@ def answered(order: Order, answer: DotMessage) -> DotAnswer:
 
 @dataclass(frozen=True, slots=True)
 class RecordedFile:
-    """A recording in a sensor's memory.
+    """A recording in a sensor's memory."""
 
-    Attributes
-    ----------
-    number
-        Counted from 1.
-    started_utc_s
-        What `start_recording` was given.
-    most_bytes
-        About: as many pieces of the memory as it takes.
-    """
-
-    number: int
-    started_utc_s: int
-    most_bytes: int = 0
+    number: int  # counted from 1
+    started_utc_s: int  # what `start_recording` was given
+    most_bytes: int = 0  # about: as many pieces of the memory as it takes
 
     @classmethod
     def parsed(cls, number: int, data: bytes, pieces: int = 0) -> "RecordedFile":
-        """Of a notice FILE_INFO, without its first byte, and how many pieces of the memory it takes.
-
-        What it has as its length is the timer that it was begun with (revision C, 5.2.4.9): it has none here.
-
-        Raises
-        ------
-        DotMessageError
-            It is something else.
-        """
+        """Parse FILE_INFO less its first byte; its length field is a timer, unused (revision C, 5.2.4.9)."""
         if len(data) < FILE_INFO.size:
             raise DotMessageError(f"a file's information has {len(data)} bytes, expected {FILE_INFO.size}")
         magic, _, _, started, _ = FILE_INFO.unpack_from(data)
@@ -325,13 +283,7 @@ class RecordedFile:
 
 
 def files_listed(notices: bytes) -> tuple[int, ...]:
-    """How many pieces of the memory each file takes, by the notices LIST without their first bytes, joined.
-
-    Raises
-    ------
-    DotMessageError
-        It is no list.
-    """
+    """Give each file's memory pieces from joined LIST notices less first bytes; raises DotMessageError."""
     if len(notices) < FLASH_HEADER.size or not notices.startswith(FLASH_MAGIC):
         raise DotMessageError(f"a list begins with {notices[:4].hex()}")
     _, header_size = FLASH_HEADER.unpack_from(notices)

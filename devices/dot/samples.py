@@ -6,7 +6,7 @@ which begin again every 71 minutes; there is no counter, so that loss shows in t
 
 import math
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from devices.clocks.clock import Unwrapping
@@ -93,8 +93,9 @@ class DotFramer:
 
     def __init__(self, info: SourceInfo) -> None:
         self.received = Received()
-        self._frames, self._damaged = NotificationFrames(KNOWN), 0
-        self._mode = _mode_of(info.settings)
+        self._frames = NotificationFrames(KNOWN)
+        mode = info.settings.get("mode")
+        self._mode = MODES.get(mode) if isinstance(mode, int) else None
         self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
         self._is_first = True
 
@@ -106,11 +107,11 @@ class DotFramer:
                 self._take(self._mode.sample(payload), host_s)
             else:
                 self.received.skipped += 1
-        self._count_damaged()
+        self.received.damaged += self._frames.newly_damaged()
 
     def flush(self) -> None:
         self._frames.flush()
-        self._count_damaged()
+        self.received.damaged += self._frames.newly_damaged()
 
     def _take(self, sample: DotSample | None, host_s: float) -> None:
         if sample is None:
@@ -124,23 +125,11 @@ class DotFramer:
         if sample.orientation:
             self.received.orientations.append((device_s, *sample.orientation))
 
-    def _count_damaged(self) -> None:
-        self.received.damaged += self._frames.damaged - self._damaged
-        self._damaged = self._frames.damaged
-
-
-def _mode_of(settings: Mapping[str, object]) -> StreamMode | None:
-    mode = settings.get("mode")
-    return MODES.get(mode) if isinstance(mode, int) else None
-
 
 class FileFramer:
     """Samples of a file as they are fetched, some of them again. The first of each number is kept.
 
-    Attributes
-    ----------
-    next
-        The number after the highest that was received.
+    `next`: the number after the highest that was received.
     """
 
     def __init__(self) -> None:

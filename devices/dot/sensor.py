@@ -59,18 +59,12 @@ def is_dot(one: Announced) -> bool:
 class DotSensor:
     """A sensor that announces itself. Coroutines are for the links' thread; `taken` may be called from any.
 
-    Attributes
-    ----------
-    info, battery
-        As it reported last; None and nothing before it was connected.
-    has_heading_reset
-        Whether some program turned the headings of its orientations, which lasts until it is switched off.
-    cut_notices
-        How many notices arrived shorter than they say that they are: the link may carry too little.
-    is_full
-        Whether it has reported that its memory is full since it was last asked to record.
-    fetched_last
-        The file whose sending was ordered last.
+    `info`, `battery`: as it reported last; None and nothing before it was connected.
+    `has_heading_reset`: whether some program turned the headings of its orientations, which lasts until it is switched
+    off.
+    `cut_notices`: how many notices arrived shorter than they say that they are: the link may carry too little.
+    `is_full`: whether it has reported that its memory is full since it was last asked to record.
+    `fetched_last`: the file whose sending was ordered last.
     """
 
     def __init__(self, radio: Radio, announced: Announced) -> None:
@@ -157,13 +151,7 @@ class DotSensor:
     # settings and streams
 
     async def set_up(self, rate_hz: int, profile: int) -> None:
-        """Set rate and profile, and see that they are set.
-
-        Raises
-        ------
-        DotRefusedError
-            They are not.
-        """
+        """Set rate and profile and confirm; raises DotRefusedError where they are not set."""
         required = DotSettings(rate_hz, profile)
         if await self.settings() == required:
             return
@@ -186,13 +174,7 @@ class DotSensor:
         return MODES.get(control.mode) if control.is_on else None
 
     async def start_stream(self) -> StreamMode:
-        """Stream with orientations, where it can.
-
-        Raises
-        ------
-        DotRefusedError
-            It does not begin.
-        """
+        """Stream, with orientations where it can; raises DotRefusedError where it does not begin."""
         for mode in (FULL, PLAIN):
             await self._write(Characteristic.CONTROL, switching(mode.number, is_on=True))
             if await self.control() == StreamControl(is_on=True, mode=mode.number):
@@ -255,13 +237,7 @@ class DotSensor:
             self._notices.get_nowait()
 
     async def notice(self, within_s: float = NOTICE_S) -> bytes:
-        """The next notice as it came; empty where none comes in time.
-
-        Raises
-        ------
-        SourceLostError
-            The link is gone, and so is whatever was not received.
-        """
+        """Give the next notice as it came, empty on timeout; raises SourceLostError where the link is gone."""
         try:
             async with asyncio.timeout(within_s):
                 return await self._notices.get()

@@ -111,26 +111,15 @@ class DotGroup:
         return self.use is DotUse.RECORDING
 
     def synchronise(self, show_message: ShowMessage = _show_nobody, tick: Tick | None = None) -> None:
-        """Bring all onto one clock, also once more, and stream; takes half a minute to two.
-
-        Never while one of them is recorded. What `show_message` or `tick` (see `Radio.run`) raises ends it.
-
-        Raises
-        ------
-        NotSynchronisedError
-            Some did not follow. They may be tried again, or left out.
-        SourceRefusedError
-            One cannot be synchronised, and states why.
+        """Bring all onto one clock and stream; takes half a minute to two, never while one is recorded.
+        Raises NotSynchronisedError (to be retried) or SourceRefusedError, and what the callbacks raise.
         """
         with self._synchronising:
             self._bring_together(self.rate_hz, show_message, tick, must_stream=True)
             self.use = DotUse.STREAMING
 
     def make_ready_to_record(self, show_message: ShowMessage = _show_nobody, tick: Tick | None = None) -> None:
-        """Bring all onto one clock at the rate that their memories record with; as `synchronise`.
-
-        Where they are on one at this rate, and are to be for long enough still, they only stop streaming.
-        """
+        """Bring all onto one clock at the recording rate; where they are on it, only stop streaming."""
         rate_hz = self.record_hz or self.rate_hz
         with self._synchronising:
             if self.are_one_at(rate_hz):
@@ -144,15 +133,7 @@ class DotGroup:
             self.use = DotUse.RECORDING
 
     def fall_silent(self, tick: Tick | None = None) -> None:
-        """Stop streaming, on whatever clock they are: their memories can be asked then.
-
-        Raises
-        ------
-        SourceLostError
-            One is out of reach; some may go on streaming, and are taken for what they were.
-        DotRefusedError
-            One records.
-        """
+        """Stop streaming on any clock, so memories can be asked; raises SourceLostError, DotRefusedError."""
         with self._synchronising:
             self.turn += 1
             self.radio.run(_silenced(self.sensors), tick)
@@ -245,27 +226,20 @@ async def _streaming(sensor: DotSensor, rate_hz: int, profile: int) -> None:
 class DotSource:
     """The `LiveSource` of one sensor: streams, and goes on streaming while its link is lost.
 
-    Attributes
-    ----------
-    sensor, group
-        Whose source it is, and with whom it is worn.
+    `sensor`, `group`: whose source it is, and with whom it is worn.
     """
 
     has_bytes = True
 
     def __init__(self, sensor: DotSensor, group: DotGroup) -> None:
         self.sensor, self.group = sensor, group
-        self._info = SourceInfo(DRIVER, VERSION, sensors=(sensor.name,))
+        self.info = SourceInfo(DRIVER, VERSION, sensors=(sensor.name,))
         self._framer: DotFramer | None = None
         self._clock, self._clock_name = LiveClock(), ""
         self._was_open = False
         self._clock_begun = 0  # so often its own clock is known to have begun again
         self._keeps_link = False
         self._turn = -1
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     @property
     def sent(self) -> Sequence[bytes]:
@@ -322,10 +296,10 @@ class DotSource:
             self._clock = LiveClock(group.line_of(sensor.name))
         self._clock.begin()
         self._clock_name = name
-        self._info = SourceInfo(
+        self.info = SourceInfo(
             DRIVER, VERSION, info.serial, (sensor.name,), settings, is_simulated=info.model == EMULATED
         )
-        self._framer = DotFramer(self._info)
+        self._framer = DotFramer(self.info)
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         radio, framer = self.group.radio, self._framer

@@ -100,11 +100,10 @@ class NotSynchronisedError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Synchronised:
-    """Sensors on one clock; those that stream now, each in its mode. `name` distinguishes the clock from others."""
+    """Sensors on one clock. `name` distinguishes the clock from others."""
 
     name: str
     at_ns: int
-    modes: dict[str, StreamMode]
 
 
 class _Synchronising:
@@ -112,28 +111,24 @@ class _Synchronising:
 
     def __init__(self, sensors: Sequence[DotSensor], rate_hz: int, profile: int, show_message: ShowMessage) -> None:
         self._sensors, self._rate_hz, self._profile, self._show_whom = sensors, rate_hz, profile, show_message
-        self._failed: dict[str, SyncFailure] = {}
+        self.failed: dict[str, SyncFailure] = {}
         self._started: list[DotSensor] = []
         self._free_s = 0.0  # from then on those that were started can be reached
 
-    @property
-    def failed(self) -> Mapping[str, SyncFailure]:
-        return self._failed
-
     async def has_succeeded(self) -> bool:
         """Whether all sensors follow; where one does not, none is left synchronised."""
-        self._failed, self._started = {}, []
+        self.failed, self._started = {}, []
         try:
             await self._prepare()
-            if not self._failed:
+            if not self.failed:
                 await self._start()
                 await self._bring_back()
         except BaseException:
             await self.give_up()
             raise
-        if self._failed:
+        if self.failed:
             await self.give_up()
-        return not self._failed
+        return not self.failed
 
     async def give_up(self) -> None:
         if self._started:
@@ -143,7 +138,7 @@ class _Synchronising:
                 await _given_up(sensor)
 
     def fail(self, failed: Mapping[str, SyncFailure]) -> None:
-        self._failed |= failed
+        self.failed |= failed
 
     def show_message(self, stage: SyncStage, sensor: str = "", left_s: float = 0.0) -> None:
         self._show_whom(stage, sensor, left_s + RECEIVED_S)
@@ -164,11 +159,11 @@ class _Synchronising:
                     )
                 await sensor.stop_stream()
                 if not await _is_stopped(sensor):
-                    self._failed[sensor.name] = SyncFailure.STAYS
+                    self.failed[sensor.name] = SyncFailure.STAYS
                     continue
                 await sensor.set_up(self._rate_hz, self._profile)
             except SourceLostError:
-                self._failed[sensor.name] = SyncFailure.LOST
+                self.failed[sensor.name] = SyncFailure.LOST
 
     async def _start(self) -> None:
         """Let the clocks find each other."""
@@ -180,7 +175,7 @@ class _Synchronising:
                 self._free_s = loop.time() + SYNCHRONISING_S
                 self._started.append(sensor)
             except SourceLostError:
-                self._failed[sensor.name] = SyncFailure.LOST
+                self.failed[sensor.name] = SyncFailure.LOST
         await asyncio.sleep(HELD_S)
         for sensor in self._sensors:
             await sensor.disconnect()
@@ -196,7 +191,7 @@ class _Synchronising:
             left_s = (len(self._sensors) - number) * CONNECTS_S
             problem = await self._came_through(sensor, until_s, left_s)
             if problem is not None:
-                self._failed.setdefault(sensor.name, problem)
+                self.failed.setdefault(sensor.name, problem)
 
     async def _came_through(self, sensor: DotSensor, until_s: float, left_s: float) -> SyncFailure | None:
         """Connect and ask for the result before anything else; what went wrong, if something did."""
@@ -222,28 +217,14 @@ class _Synchronising:
 async def synchronise(
     sensors: Sequence[DotSensor], rate_hz: int, profile: int, show_message: ShowMessage, *, must_stream: bool = True
 ) -> Synchronised:
-    """Bring sensors onto one clock, the first of them being the root: the one nearest to all others.
-
-    Parameters
-    ----------
-    must_stream
-        Else they are left idle, for a rate that nobody streams with.
-
-    Raises
-    ------
-    NotSynchronisedError
-        Some did not follow, twice; all are as if nothing had been begun, and may be tried again.
-    SourceRefusedError
-        One records in its memory, does not take its rate, or cannot synchronise.
-    """
+    """Bring sensors onto one clock, the first as root; raises NotSynchronisedError or SourceRefusedError."""
     trying = _Synchronising(sensors, rate_hz, profile, show_message)
     for _ in range(TRIES):
         if not await trying.has_succeeded():
             continue
-        modes: dict[str, StreamMode] = {}
         if must_stream:
             trying.show_message(SyncStage.LISTENING)
-            modes, failed = await _received_as_one(sensors)
+            failed = await _received_as_one(sensors)
             if failed:
                 trying.fail(failed)
                 await trying.give_up()
@@ -251,20 +232,12 @@ async def synchronise(
         root = sensors[0].info
         assert root is not None
         at_ns = sensors[0].radio.now_ns()
-        return Synchronised(f"{root.mac} {at_ns}", at_ns, modes)
+        return Synchronised(f"{root.mac} {at_ns}", at_ns)
     raise NotSynchronisedError(trying.failed)
 
 
 async def refuse_while_recording(sensor: DotSensor) -> None:
-    """Raise unless its memory is known to be idle: whatever is set while it records cuts the file.
-
-    Raises
-    ------
-    DotRefusedError
-        It records, or does not report whether it does.
-    SourceLostError
-        It is out of reach.
-    """
+    """Raise DotRefusedError unless the memory is known to be idle (settings cut a file), or SourceLostError."""
     state = await sensor.state()
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
@@ -292,9 +265,10 @@ async def _is_stopped(sensor: DotSensor) -> bool:
     return await sensor.expect(lambda notice: notice == SYNC_STOPPED) is not None
 
 
-async def _received_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamMode], dict[str, SyncFailure]]:
+async def _received_as_one(sensors: Sequence[DotSensor]) -> dict[str, SyncFailure]:
     """Let all stream, and compare their clocks by what arrives: one that claims to be on it may not be."""
-    modes, late_s, failed = {}, {}, {}
+    modes, late_s = {}, {}
+    failed: dict[str, SyncFailure] = {}
     for sensor in sensors:
         try:
             modes[sensor.name] = await sensor.start_stream()
@@ -314,7 +288,7 @@ async def _received_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, Stre
         off_s = {name: (one_s - first_s + TURN_S / 2) % TURN_S - TURN_S / 2 for name, one_s in late_s.items()}
         middle_s = float(np.median(list(off_s.values())))
         failed |= {name: SyncFailure.OTHER_CLOCK for name, one_s in off_s.items() if abs(one_s - middle_s) > APART_S}
-    return modes, failed
+    return failed
 
 
 def _least_late_s(sensor: DotSensor, mode: StreamMode) -> tuple[float | None, bool]:
@@ -341,10 +315,7 @@ async def _given_up(sensor: DotSensor) -> None:
 
 
 async def let_go(sensor: DotSensor, *, is_synchronised: bool) -> None:
-    """Let one that is connected send nothing, and have a clock of its own, which spares its battery.
-
-    One that records is let be. Never raises; its link stays.
-    """
+    """Let a connected sensor send nothing and have its own clock, unless it records; never raises."""
     with suppress(SourceLostError, SourceRefusedError):
         await refuse_while_recording(sensor)
         await sensor.stop_stream()

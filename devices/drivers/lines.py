@@ -45,13 +45,7 @@ def columns_in(data: bytes) -> int:
 
 
 def table_of(lines: Sequence[str]) -> tuple[FloatArray, str]:
-    """The numbers (n, columns) of those lines that have the usual many of them, and what parts them.
-
-    Returns
-    -------
-    (n, columns) and str
-        Numbers as they stand in the lines, and the name of what parts them.
-    """
+    """Give the numbers (n, columns) of lines with the usual many of them, and the name of their separator."""
     best, chosen = np.empty((0, 0)), "comma"
     for name, separator in SEPARATORS.items():
         rows = [row for line in lines if (row := _numbers(line, separator))]

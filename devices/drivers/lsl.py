@@ -103,13 +103,7 @@ class _QueriedNetwork:
 
 
 def ask_in(address: str) -> None:
-    """Ask for streams in the network where this computer has this address, or on this computer only.
-
-    Raises
-    ------
-    SourceRefusedError
-        The library is not installed, or streams were asked for elsewhere before.
-    """
+    """Ask in the network of this address of ours, or on this computer alone; raises SourceRefusedError."""
     pylsl = _imported()
     with _QueriedNetwork.changing:
         if not _QueriedNetwork.address:
@@ -125,23 +119,7 @@ def ask_in(address: str) -> None:
 
 
 def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...]:
-    """Ask for streams of numbers, see `ask_in`; raises as it does.
-
-    Parameters
-    ----------
-    wait_s
-        How long answers are waited for.
-
-    Returns
-    -------
-    tuple of LslStream
-        Those that hold numbers.
-
-    Raises
-    ------
-    SourceRefusedError
-        See `ask_in`.
-    """
+    """Find streams of numbers, see `ask_in`; raises SourceRefusedError."""
     ask_in(address)
     pylsl = _library()
     found = [one for one in pylsl.resolve_streams(wait_s) if one.channel_format() != pylsl.cf_string]
@@ -149,13 +127,7 @@ def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...
 
 
 def announced_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
-    """Ask a stream what its channels are.
-
-    Raises
-    ------
-    SourceRefusedError
-        It does not answer, or has no sensors that can be understood.
-    """
+    """Ask a stream what its channels are; raises SourceRefusedError without an answer or known sensors."""
     source = LslSource(stream)
     try:
         source.open()
@@ -165,16 +137,7 @@ def announced_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
 
 
 def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tuple[LslSensor, ...]:
-    """The sensors among a stream's channels, by the labels and units of these.
-
-    A label holds the sensor's name (if there are several), the quantity and the axis: `Shimmer_5E3A_Gyro_X_CAL` or
-    `accZ`.
-
-    Raises
-    ------
-    SourceRefusedError
-        No channels of rate and force, or units that are not named.
-    """
+    """Give the sensors by channel labels (`Shimmer_5E3A_Gyro_X_CAL`, `accZ`); raises SourceRefusedError."""
     places: dict[tuple[str, str], dict[str, int]] = {}
     for column, label in enumerate(labels):
         if (found := _parsed(label)) is not None:
@@ -249,20 +212,16 @@ class LslSource:
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
         self._stream, self._given, self._now_ns = stream, sensors, now_ns
-        self._sensors: tuple[LslSensor, ...] = ()
+        self.sensors: tuple[LslSensor, ...] = ()
+        """Known once it is open."""
         self._inlet: Any = None
         self._clock = LiveClock()
 
     @property
     def info(self) -> SourceInfo:
-        names = tuple(sensor.name for sensor in self._sensors)
+        names = tuple(sensor.name for sensor in self.sensors)
         settings = {"stream": self._stream.name, "host": self._stream.host, "rate_hz": self._stream.rate_hz}
         return SourceInfo(DRIVER, VERSION, self._stream.source, names, settings)
-
-    @property
-    def sensors(self) -> tuple[LslSensor, ...]:
-        """Known once it is open."""
-        return self._sensors
 
     def open(self) -> None:
         pylsl = _library()
@@ -286,7 +245,7 @@ class LslSource:
                 "Restart it in the sending program",
                 name=self._stream.name,
             ) from problem
-        self._sensors, self._inlet = tuple(sensors), inlet
+        self.sensors, self._inlet = tuple(sensors), inlet
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         if self._inlet is None:
@@ -312,7 +271,7 @@ class LslSource:
                 rows[:, sensor.rate] * sensor.rate_scale,
                 rows[:, sensor.force] * sensor.force_scale,
             )
-            for sensor in self._sensors
+            for sensor in self.sensors
         ]
 
     def close(self) -> None:
@@ -322,7 +281,7 @@ class LslSource:
 
     def details(self) -> Mapping[str, SensorDetails]:
         one = SensorDetails(model=self._stream.kind, serial=self._stream.source, rate_hz=self._stream.rate_hz)
-        return {sensor.name: one for sensor in self._sensors}
+        return {sensor.name: one for sensor in self.sensors}
 
     def identify(self, sensor: str) -> bool:
         return False
@@ -368,7 +327,7 @@ def _library() -> ModuleType:
 
 def _imported() -> ModuleType:
     try:
-        import pylsl.util
+        import pylsl.util  # an extra
     except (ImportError, RuntimeError, OSError) as problem:  # RuntimeError: its own library is not there
         raise SourceRefusedError("Lab Streaming Layer is not installed", "Install gaitwright[lsl]") from problem
     library: ModuleType = pylsl

@@ -66,17 +66,10 @@ GYR_RANGE = 3  # 2000 deg/s
 ACC_RATE = 7  # 400 Hz or more, on either board
 GYR_BASE_HZ = 8000
 BATTERY, ACC, GYR = 0x03, (0x04, 0x05, 0x06), (0x0A, 0x0B, 0x0C)
-SIZES = {  # bytes of a channel; two of all others that are known
-    **dict.fromkeys(range(0x1B), 2),
-    0x1B: 3,
-    0x1C: 2,
-    0x1D: 1,
-    0x1E: 3,
-    0x1F: 3,
-    0x20: 1,
-    0x21: 3,
-    0x22: 3,
-    **dict.fromkeys(range(0x23, 0x29), 2),
+SIZES = {  # bytes of a channel
+    **dict.fromkeys(range(0x29), 2),
+    **dict.fromkeys((0x1B, 0x1E, 0x1F, 0x21, 0x22), 3),
+    **dict.fromkeys((0x1D, 0x20), 1),
 }
 CALIBRATION_SIZE = 21  # of one of four: low-noise accelerometer, rate, field, wide-range accelerometer
 CALIBRATION_SHAPE = struct.Struct(">6h9b")
@@ -96,23 +89,7 @@ def checksum(data: bytes) -> bytes:
 
 
 def calibrating(block: bytes, scale: float) -> tuple[FloatArray, FloatArray]:
-    """Offset (3) and matrix (3, 3) that make `matrix @ (raw - offset)` of raw numbers.
-
-    Parameters
-    ----------
-    scale
-        What sensitivities are stored as multiples of.
-
-    Returns
-    -------
-    (3,) and (3, 3)
-        In raw numbers, and in the sensor's unit per raw number.
-
-    Raises
-    ------
-    ValueError
-        There is no calibration in these bytes.
-    """
+    """Give offset (3,) and matrix (3, 3) of `matrix @ (raw - offset)`; ValueError without a calibration."""
     numbers = np.array(CALIBRATION_SHAPE.unpack(block), dtype=float)
     offset, sensitivity, alignment = numbers[:3], numbers[3:6] / scale, numbers[6:].reshape(3, 3) / 100
     if not sensitivity.all() or abs(np.linalg.det(alignment)) < 0.1:
@@ -173,7 +150,7 @@ class Shimmer3Framer:
             return is_due if is_end else None
         if held[following] == Command.PACKET and shape.is_step(_ticks(held, following) - ticks, shape.period):
             return True
-        return is_due and not shape.is_cut(held, at, ticks)
+        return is_due and shape.find_due(held, at, ticks) < 0
 
     def _is_meant(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
         """Whether a checksum is right not just by chance, as one in 65 536 beside damage; None: not known yet."""
@@ -200,7 +177,8 @@ class Shimmer3Framer:
             return
         raw = held[at + shape.battery_at] | held[at + shape.battery_at + 1] << 8
         if abs(raw - self._battery_raw) > BATTERY_STEP:
-            self._battery_raw, self.received.battery = raw, _charge(raw)
+            self._battery_raw = raw  # half its voltage as a share of 3 V
+            self.received.battery = float(np.interp(raw / 4095 * 3.0 * 1.988, VOLTS, CHARGE))
 
     def _pass_over(self, byte: int) -> None:
         if not self._is_lost and byte != Command.DONE:  # the answer to a command is between packets
@@ -242,7 +220,7 @@ class _Shape:
         return held[at] == Command.PACKET and crc_hqx(held[at : end - 2] + self.padding, CHECKSUM_SEED) == checksum
 
     def find_due(self, held: bytes, at: int, last: int) -> int:
-        """Where within the packet at `at` one begins that is due after `last`; -1 if none does."""
+        """Where within the packet at `at` one begins that is due after one of the time `last`; -1 if none does."""
         end = min(at + self.size, len(held) - HEAD + 1)
         start = held.find(Command.PACKET, at + 1, end)
         while start >= 0:
@@ -250,15 +228,6 @@ class _Shape:
                 return start
             start = held.find(Command.PACKET, start + 1, end)
         return -1
-
-    def is_cut(self, held: bytes, at: int, ticks: int) -> bool:
-        """Whether a later packet begins within the one at `at`, which was taken at `ticks`."""
-        start = held.find(Command.PACKET, at + 1, at + self.size)
-        while start >= 0:
-            if self.is_step(_ticks(held, start) - ticks, CUT_STEPS * self.period):
-                return True
-            start = held.find(Command.PACKET, start + 1, at + self.size)
-        return False
 
 
 def _vector(
@@ -279,11 +248,6 @@ def _vector(
 
 def _ticks(held: bytes, at: int) -> int:
     return held[at + 1] | held[at + 2] << 8 | held[at + 3] << 16
-
-
-def _charge(raw: int) -> float:
-    """Of the battery, 0 to 1, from half its voltage as a share of 3 V."""
-    return float(np.interp(raw / 4095 * 3.0 * 1.988, VOLTS, CHARGE))
 
 
 class Shimmer3:

@@ -162,18 +162,7 @@ def _is_head(rest: bytes, at: int) -> bool:
 
 
 def scaled(numbers: Sequence[int], unit: float) -> tuple[float, ...]:
-    """Three axes as they are sent, in SI units; by cable and by air alike.
-
-    Parameters
-    ----------
-    unit
-        `FORCE_UNIT` or `RATE_UNIT`: m/s2 or rad/s for each.
-
-    Returns
-    -------
-    tuple
-        (3,).
-    """
+    """Scale three axes to SI by `FORCE_UNIT` or `RATE_UNIT` (m/s2 or rad/s), by cable and by air alike."""
     return tuple(number * unit for number in numbers)
 
 

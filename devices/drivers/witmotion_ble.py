@@ -54,18 +54,18 @@ class WitBleFramer:
 
     def __init__(self, info: SourceInfo) -> None:
         self.received = Received()
-        self._frames, self._damaged = NotificationFrames({MEASURED}), 0
+        self._frames = NotificationFrames({MEASURED})
         rate_hz = info.settings.get("rate_hz")
         self._clock = ArrivalClock(rate_hz if isinstance(rate_hz, float) and rate_hz > 0 else RATE_HZ)
 
     def feed(self, data: bytes, host_s: float) -> None:
         for _, payload in self._frames.feed(data):
             self._take(payload, host_s)
-        self._count_damaged()
+        self.received.damaged += self._frames.newly_damaged()
 
     def flush(self) -> None:
         self._frames.flush()
-        self._count_damaged()
+        self.received.damaged += self._frames.newly_damaged()
 
     def _take(self, payload: bytes, host_s: float) -> None:
         for at in range(0, len(payload), FRAME.size):
@@ -78,10 +78,6 @@ class WitBleFramer:
                 continue
             rate, force = scaled(numbers[3:6], RATE_UNIT), scaled(numbers[:3], FORCE_UNIT)
             self.received.rows.append((self._clock.take(host_s), *rate, *force))
-
-    def _count_damaged(self) -> None:
-        self.received.damaged += self._frames.damaged - self._damaged
-        self._damaged = self._frames.damaged
 
 
 class WitBle:
@@ -122,12 +118,8 @@ class WitBleSource:
         self._clock = LiveClock()
         settings = {"rate_hz": rate_hz}
         is_simulated = announced.name == EMULATED
-        self._info = SourceInfo(DRIVER, VERSION, announced.address, (self.name,), settings, is_simulated=is_simulated)
+        self.info = SourceInfo(DRIVER, VERSION, announced.address, (self.name,), settings, is_simulated=is_simulated)
         self._details = SensorDetails(MODEL, announced.address, "", rate_hz, is_loss_seen=False)
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     @property
     def sent(self) -> Sequence[bytes]:
@@ -149,7 +141,7 @@ class WitBleSource:
                 "{sensor} sends no measurements", "Switch it off and on, then search again", sensor=self.name
             )
         self._notified.clear()
-        self._framer = WitBleFramer(self._info)
+        self._framer = WitBleFramer(self.info)
         self._clock.begin()
 
     async def _opened(self) -> None:

@@ -108,13 +108,7 @@ def item(identifier: int, data: bytes) -> bytes:
 
 
 def values(identifier: int, data: bytes) -> tuple[float, ...]:
-    """The numbers of one item; none of an item that is not known, or of another length than it should have.
-
-    Returns
-    -------
-    tuple of float
-        In the unit of the item.
-    """
+    """Give the numbers of one item in its unit; none of an unknown item or one of the wrong length."""
     kind = identifier & ITEM_MASK
     if count := REALS.get(kind):
         return _reals(identifier & FORMAT_MASK, count, data)

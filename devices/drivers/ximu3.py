@@ -34,13 +34,7 @@ class DamagedError(ValueError):
 
 
 def unstuffed(message: bytes) -> bytes:
-    """A message without its end, its escape sequences undone.
-
-    Raises
-    ------
-    DamagedError
-        Something else is escaped.
-    """
+    """Undo a message's escapes, without its end; raises DamagedError where something else is escaped."""
     if ESC not in message:
         return message
     if message.count(ESC) != message.count(ESC_END) + message.count(ESC_ESC):
@@ -54,18 +48,7 @@ def stuffed(message: bytes) -> bytes:
 
 
 def numbers_of(message: bytes, shape: Struct, count: int) -> tuple[float, ...]:
-    """Microseconds and arguments of an unstuffed message, text or binary.
-
-    Returns
-    -------
-    tuple of float
-        Microseconds, then `count` arguments in the message's units.
-
-    Raises
-    ------
-    DamagedError
-        It has another length, no numbers, or a time that no 64 bits hold.
-    """
+    """Give microseconds and `count` arguments of an unstuffed message; raises DamagedError where invalid."""
     if message[0] & 0x80:
         if len(message) != shape.size:
             raise DamagedError
@@ -159,25 +142,13 @@ class Ximu3Framer:
 
 
 def read_file(path: Path) -> DecodedSensor:
-    """Read what the maker's programs log of one sensor (`.ximu3`); times are those of the sensor's clock.
-
-    Raises
-    ------
-    OSError
-        The file cannot be read.
-    """
+    """Read a maker's log of one sensor (`.ximu3`), stamped by the sensor's clock."""
     received = received_in(path)
     return decoded(path.stem, received, [row[0] for row in received.rows])
 
 
 def received_in(path: Path) -> Received:
-    """All messages of such a file, in its order.
-
-    Raises
-    ------
-    OSError
-        The file cannot be read.
-    """
+    """Give all messages of such a file, in its order."""
     framer = Ximu3Framer()
     with path.open("rb") as file:
         while data := file.read(PIECE):

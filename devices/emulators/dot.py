@@ -61,11 +61,8 @@ class DotClock:
 class EmulatedDot:
     """An `EmulatedPeripheral` whose clocks run by `now_ns`; it measures whether or not a link is up.
 
-    Attributes
-    ----------
-    sent
-        Of every sample that it took while it streamed, lost or not: ticks without turns, values (10) in single
-        precision, and when it was taken by the host's clock, ns.
+    `sent`: of every sample that it took while it streamed, lost or not: ticks without turns, values (10) in single
+    precision, and when it was taken by the host's clock, ns.
     """
 
     def __init__(
@@ -99,7 +96,8 @@ class EmulatedDot:
         self._answer = self._answer_before = b""
         self._notices: list[bytes] = []
         self._sync_root: bytes | None = None
-        self._sync_from_ns = 0
+        self.began_ns = 0
+        """When it was asked to synchronise."""
         self._peers: Sequence[EmulatedDot] = ()
         self._must_read_first = False
         self.memory = EmulatedMemory(self._grid, self._measured, now_ns, self.faults, self.chance)
@@ -128,8 +126,7 @@ class EmulatedDot:
         self._own = replace(self._own, power_on_ns=self._now_ns() - ticks * 1000)
 
     def _clock_us(self, at_ns: float) -> float:
-        clock = self._common or self._own
-        return clock.us(at_ns)
+        return (self._common or self._own).us(at_ns)
 
     def _taken_ns(self, clock_us: float) -> float:
         clock = self._common or self._own
@@ -142,7 +139,7 @@ class EmulatedDot:
     # what comes through the air
 
     def may_connect(self) -> bool:
-        is_synchronising = self._sync_root is not None and self._now_ns() - self._sync_from_ns < SYNC_TAKES_NS
+        is_synchronising = self._sync_root is not None and self._now_ns() - self.began_ns < SYNC_TAKES_NS
         return not is_synchronising and self._now_ns() >= self.faults.unreachable_until_ns
 
     def drops_at(self, operations: int) -> bool:
@@ -281,13 +278,13 @@ class EmulatedDot:
                 self._common, self._sync_root = None, None
                 self._notices.append(message(2, b"\x50\x00"))
             case 0x01:
-                self._sync_root, self._sync_from_ns = data[1:7][::-1], self._now_ns()
+                self._sync_root, self.began_ns = data[1:7][::-1], self._now_ns()
 
     def _end_synchronising(self) -> None:
         if self._sync_root is None:
             return
         root = next((one for one in self._peers if one.mac == self._sync_root), None)
-        was_together = root is not None and abs(self._sync_from_ns - root.began_ns) < TOGETHER_NS
+        was_together = root is not None and abs(self.began_ns - root.began_ns) < TOGETHER_NS
         result = self.faults.sync_results.pop(0) if self.faults.sync_results else 0
         if not was_together:
             result = 0x09
@@ -300,11 +297,6 @@ class EmulatedDot:
 
     def _show_answer(self, answer: bytes) -> None:
         self._answer_before, self._answer = self._answer, answer
-
-    @property
-    def began_ns(self) -> int:
-        """When it was asked to synchronise."""
-        return self._sync_from_ns
 
     @property
     def is_synchronised(self) -> bool:

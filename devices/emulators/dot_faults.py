@@ -7,16 +7,9 @@ from dataclasses import dataclass, field
 class DotFaults:
     """What goes wrong. Shares are of notifications; counts are used up.
 
-    Attributes
-    ----------
-    sync_results
-        What each attempt of synchronising ends with; a good one after the last.
-    stale_s
-        So far its clock is off after synchronising, which it calls good.
-    has_26
-        Whether its firmware knows that mode.
-    again
-        Whether it sends a file from the middle on, also while it sends nothing; while it sends it does in any case.
+    `sync_results`: what each attempt of synchronising ends with; a good one after the last.
+    `again`: whether it sends a file from the middle on, also while it sends nothing; while it sends it does in any
+    case.
     """
 
     loss: float = 0.0
@@ -25,8 +18,8 @@ class DotFaults:
     damaged: float = 0.0
     silent: float = 0.0
     sync_results: list[int] = field(default_factory=list)
-    stale_s: float = 0.0
-    has_26: bool = True
+    stale_s: float = 0.0  # so far its clock is off after synchronising, which it calls good
+    has_26: bool = True  # whether its firmware knows that mode
     again: bool = True
     busy: int = 0
     stale_answers: int = 0

@@ -13,18 +13,7 @@ FIRST_US = 1_000_000
 
 
 def message(letter: str, us: int, numbers: Sequence[float], is_binary: bool) -> bytes:
-    """A message of numbers as it is sent.
-
-    Parameters
-    ----------
-    us
-        Microseconds of the sensor's clock.
-
-    Returns
-    -------
-    bytes
-        With its end, stuffed where binary.
-    """
+    """Give a message of numbers as it is sent, with its end, stuffed where binary."""
     if is_binary:
         return stuffed(bytes([0x80 | ord(letter)]) + pack(f"<Q{len(numbers)}f", us, *numbers))
     return f"{letter},{us},{','.join(f'{number:.4f}' for number in numbers)}\r\n".encode()
@@ -40,10 +29,7 @@ def text_message(letter: str, us: int, text: str, is_binary: bool) -> bytes:
 class Ximu3Voice(EvenVoice):
     """The `Voice` of one sensor.
 
-    Attributes
-    ----------
-    strobed
-        How often its LED was asked for.
+    `strobed`: how often its LED was asked for.
     """
 
     def __init__(

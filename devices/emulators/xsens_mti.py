@@ -15,18 +15,7 @@ CANNOT = b"\x03"  # the answer to what it does not do
 
 
 def still(number: int) -> Sequence[float]:
-    """It lies on a table, and hardly turns.
-
-    Parameters
-    ----------
-    number
-        Of the sample.
-
-    Returns
-    -------
-    ten numbers
-        Rate in rad/s (3), specific force in m/s2 (3), orientation (4), scalar first.
-    """
+    """Give a still sensor's sample: rate in rad/s (3), force in m/s2 (3) and orientation (4), scalar first."""
     return (1e-3 * (number % 7), 0.0, 0.0, 0.0, 0.0, 9.81, 1.0, 0.0, 0.0, 0.0)
 
 

@@ -9,17 +9,15 @@ specific force of a sensor at rest to earth z, and its slope is the rate.
 
 import csv
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
-from core.findings import Finding
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.apdm_hdf5 import TICK_S, is_apdm_hdf5, read_apdm_hdf5
-from devices.files.clock_repair import FileClock, RepairedClock, repaired
+from devices.files.apdm_hdf5 import RecordedOpal, is_apdm_hdf5, read_apdm_hdf5
+from devices.files.clock_repair import FileClock, usual_rate, whole_clock
 from devices.files.hdf5 import is_hdf5
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError, quoted
@@ -36,30 +34,8 @@ ACC, GYR, MAG, ORIENTATION = 0, 1, 2, 3  # both dialects name the same four quan
 Columns = tuple[tuple[int, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ApdmFile:
-    """One CSV: `rows` (n, m) as numbers, NaN where a cell is empty; `columns` of each sensor by its name.
-
-    `ids`: by what else a sensor may be called. `of_clock`: what was found about its times.
-    """
-
-    path: Path
-    time_s: FloatArray
-    rows: FloatArray
-    columns: Mapping[str, Columns]
-    ids: Mapping[str, str]
-    rate_hz: float | None
-    of_clock: tuple[Finding, ...]
-
-
 def is_apdm(path: Path, head: bytes) -> bool:
-    """Whether a file that begins so is one of these exports.
-
-    Raises
-    ------
-    FileRefusedError
-        It is HDF5 and cannot be looked into.
-    """
+    """Give whether a file that begins so is such an export; raises FileRefusedError for unreadable HDF5."""
     if is_hdf5(head):
         return is_apdm_hdf5(path)
     lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
@@ -70,15 +46,8 @@ def is_apdm(path: Path, head: bytes) -> bool:
     )
 
 
-def read_apdm(path: Path) -> ApdmFile:
-    """Read one CSV.
-
-    Raises
-    ------
-    FileRefusedError
-        None of the dialects, sensors without acceleration or rates, other units, what is no number, times that step
-        back.
-    """
+def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
+    """Read one CSV; raises FileRefusedError where it cannot be read or its times step back."""
     where = path.name
     with path.open(encoding="utf-8-sig", newline="") as file:
         reader = csv.reader(file)
@@ -99,22 +68,22 @@ def read_apdm(path: Path) -> ApdmFile:
     last = max((place for found in columns.values() for places in found for place in places), default=0)
     if last >= rows.shape[1]:
         raise FileRefusedError(where, "the header lines of the file differ in length", EXPORT_AGAIN)
-    clock = _clock(rows[:, 0], tick_s, first_row, where)
-    stamps = clock.stamps[clock.is_new]
-    time_s = (stamps - stamps[:1]) * tick_s
-    found = ApdmFile(path, time_s, rows[clock.is_new], columns, ids, rate_hz, clock.findings)
-    _check_units(found)
-    return found
+    name_of_clock = FileClock(where, lambda row: f"line {row + first_row + 1}", TIME, tick_s)
+    clock = whole_clock(rows[:, 0], name_of_clock, EXPORT_AGAIN)
+    stamps, rows = clock.stamps[clock.is_new], rows[clock.is_new]
+    opals = []
+    for name, places in columns.items():
+        acc, gyr, mag, q = (rows[:, list(found)] if found else None for found in places)
+        assert acc is not None  # `_found` refuses a sensor without
+        assert gyr is not None
+        known = tuple(filter(None, [ids.get(name)]))
+        called = ids.get(name, name)
+        opals.append(RecordedOpal(name, called, known, stamps, tick_s, acc, gyr, q, mag, rate_hz, clock.findings))
+    return tuple(opals)
 
 
 def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file; they share its stamps, which give the rate.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_apdm` refuses, several files.
-    """
+    """Read one trial's sensors from its one file; shared stamps give the rate; raises FileRefusedError."""
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),
@@ -123,35 +92,24 @@ def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> Imported
         )
     with files[0].open("rb") as opened:
         has_hdf5 = is_hdf5(opened.read(16))
-    return ImportedTrial("apdm", tuple(_of_hdf5(files[0]) if has_hdf5 else _of_csv(files[0])))
-
-
-def _of_csv(path: Path) -> Iterator[ImportedSensor]:
-    file = read_apdm(path)
-    rate_hz = file.rate_hz or _rate_of(file.time_s)
-    for name in file.columns:
-        called = file.ids.get(name, name)
-        info = SensorInfo(serial=called, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
-        ids = tuple(filter(None, [file.ids.get(name)]))
-        yield ImportedSensor(name, ids, str(path), _block(file, name), info, file.of_clock)
-
-
-def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
-    opals = read_apdm_hdf5(path)
+    opals = read_apdm_hdf5(files[0]) if has_hdf5 else read_apdm(files[0])
     start = min((opal.stamps[0] for opal in opals if len(opal.stamps)), default=0.0)
-    for opal in opals:
-        check_magnitudes(opal.acc_m_s2, opal.gyr_rad_s, opal.name, path.name)
-        block = ImuBlock(
-            sensor=opal.ids[-1],
-            time_s=(opal.stamps - start) * TICK_S,
-            gyr_rad_s=opal.gyr_rad_s,
-            acc_m_s2=opal.acc_m_s2,
-            q_earth_from_sensor=opal.q_earth_from_sensor,
-            mag=opal.mag,
-        )
-        rate_hz = opal.rate_hz or _rate_of(block.time_s)
-        info = SensorInfo(serial=opal.ids[-1], rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
-        yield ImportedSensor(opal.name, opal.ids, str(path), block, info, opal.of_clock)
+    return ImportedTrial("apdm", tuple(_sensor(opal, start, files[0]) for opal in opals))
+
+
+def _sensor(opal: RecordedOpal, start: float, path: Path) -> ImportedSensor:
+    check_magnitudes(opal.acc_m_s2, opal.gyr_rad_s, opal.name, path.name)  # one dialect states no units
+    block = ImuBlock(
+        sensor=opal.called,
+        time_s=(opal.stamps - start) * opal.tick_s,
+        gyr_rad_s=opal.gyr_rad_s,
+        acc_m_s2=opal.acc_m_s2,
+        q_earth_from_sensor=opal.q_earth_from_sensor,
+        mag=opal.mag,
+    )
+    rate_hz = opal.rate_hz or usual_rate(block.time_s)
+    info = SensorInfo(serial=opal.called, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
+    return ImportedSensor(opal.name, opal.ids, str(path), block, info, opal.of_clock)
 
 
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
@@ -244,39 +202,3 @@ def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> 
                         f"{where}, line {number}", "{cell} is not a number", EXPORT_AGAIN, cell=quoted(cell)
                     ) from None
         raise
-
-
-def _clock(stamps: FloatArray, tick_s: float, first_row: int, where: str) -> RepairedClock:
-    """(n,) stamps in ticks, all of which have to be there."""
-    is_there = np.isfinite(stamps)
-    if not is_there.all():
-        line = int(np.argmin(is_there)) + first_row + 1
-        raise FileRefusedError(f"{where}, line {line}", "a sample has no time", EXPORT_AGAIN)
-    return repaired(stamps, FileClock(where, lambda row: f"line {row + first_row + 1}", TIME, tick_s))
-
-
-def _block(file: ApdmFile, name: str) -> ImuBlock:
-    parts = [file.rows[:, list(columns)] if columns else None for columns in file.columns[name]]
-    gyr, acc = parts[GYR], parts[ACC]
-    assert gyr is not None  # `_found` refuses a sensor without
-    assert acc is not None
-    return ImuBlock(
-        sensor=file.ids.get(name, name),
-        time_s=file.time_s,
-        gyr_rad_s=gyr,
-        acc_m_s2=acc,
-        q_earth_from_sensor=parts[ORIENTATION],
-        mag=parts[MAG],
-    )
-
-
-def _rate_of(time_s: FloatArray) -> float | None:
-    steps_s = np.diff(time_s)
-    return round(1.0 / float(np.median(steps_s)), 1) if len(steps_s) else None
-
-
-def _check_units(file: ApdmFile) -> None:
-    """By magnitude: one dialect states no units."""
-    for name, columns in file.columns.items():
-        acc, gyr = (file.rows[:, list(columns[what])] for what in (ACC, GYR))
-        check_magnitudes(acc, gyr, name, file.path.name)

@@ -18,7 +18,7 @@ import numpy as np
 
 from core.findings import Finding
 from core.samples import FloatArray
-from devices.files.clock_repair import FileClock, RepairedClock, repaired
+from devices.files.clock_repair import FileClock, whole_clock
 from devices.files.hdf5 import Hdf5File
 from devices.files.refusal import FileRefusedError, quoted
 
@@ -35,14 +35,16 @@ MOST_SENSORS = 100
 
 @dataclass(frozen=True, slots=True)
 class RecordedOpal:
-    """One sensor's samples as the file holds them, `stamps` in microseconds since 1970, ascending.
+    """One sensor's samples as the file holds them, `stamps` ascending, of `tick_s` each.
 
-    `of_clock`: what was found about its stamps.
+    `called`: its serial number, as far as the file gives it. `of_clock`: what was found about its stamps.
     """
 
     name: str
+    called: str
     ids: tuple[str, ...]
     stamps: FloatArray
+    tick_s: float
     acc_m_s2: FloatArray
     gyr_rad_s: FloatArray
     q_earth_from_sensor: FloatArray | None
@@ -66,26 +68,14 @@ class _Layout:
 
 
 def is_apdm_hdf5(path: Path) -> bool:
-    """Whether an HDF5 file states that it is of these programs.
-
-    Raises
-    ------
-    FileRefusedError
-        It cannot be looked into.
-    """
+    """Give whether an HDF5 file states these programs; raises FileRefusedError where it cannot be opened."""
     with Hdf5File(path, path.name) as file:
         has_version = file.attribute("/", VERSION) is not None
         return has_version and (bool(file.texts("/", CASE_IDS)) or file.is_group(SENSORS))
 
 
 def read_apdm_hdf5(path: Path) -> tuple[RecordedOpal, ...]:
-    """The sensors of one file.
-
-    Raises
-    ------
-    FileRefusedError
-        Another version, sensors without times, acceleration or rates, other units, times that step back.
-    """
+    """Read the sensors of one file; raises FileRefusedError on other versions, units, or times stepping back."""
     with Hdf5File(path, path.name) as file:
         version = _number(file, "/", VERSION)
         if version not in VERSIONS:
@@ -156,14 +146,18 @@ def _read(file: Hdf5File, layout: _Layout) -> RecordedOpal:
     for place, quantity in ((layout.acc, "acceleration"), (layout.gyr, "angular rate")):
         _check_unit(file, place, quantity)
     orientation, mag = _matrix(file, layout.orientation, (n, 4)), _matrix(file, layout.mag, (n, 3))
-    clock = _clock(stamps, file.where, layout.name)
+    name = FileClock(f"{file.where}, {layout.name}", lambda row: f"sample {row + 1}", "Time", TICK_S)
+    clock = whole_clock(stamps, name, SAVE_AGAIN)
     is_new = clock.is_new
     rate_hz = _number(file, *layout.rate)
     number = layout.case.rpartition("-")[2].lstrip("0")
+    ids = tuple(dict.fromkeys(filter(None, (layout.case, number))))
     return RecordedOpal(
         name=layout.name,
-        ids=tuple(dict.fromkeys(filter(None, (layout.case, number)))),
+        called=ids[-1],
+        ids=ids,
         stamps=clock.stamps[is_new],
+        tick_s=TICK_S,
         acc_m_s2=acc[is_new],
         gyr_rad_s=gyr[is_new],
         q_earth_from_sensor=None if orientation is None else _rotations(orientation[is_new]),
@@ -195,15 +189,6 @@ def _rotations(q: FloatArray) -> FloatArray:
     length = np.linalg.norm(q, axis=1, keepdims=True)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(np.abs(length - 1.0) < 0.01, q / length, np.nan)
-
-
-def _clock(stamps: FloatArray, where: str, sensor: str) -> RepairedClock:
-    """(n,) stamps, all of which have to be there."""
-    is_there = np.isfinite(stamps)
-    if not is_there.all():
-        number = int(np.argmin(is_there)) + 1
-        raise FileRefusedError(f"{where}, {sensor}, sample {number}", "a sample has no time", SAVE_AGAIN)
-    return repaired(stamps, FileClock(f"{where}, {sensor}", lambda row: f"sample {row + 1}", "Time", TICK_S))
 
 
 def _check_unit(file: Hdf5File, place: str, quantity: str) -> None:

@@ -58,19 +58,7 @@ def bids_recording(path: Path) -> str:
 
 
 def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The tracked points with accelerometer and gyroscope, of all tracking systems of one recording.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files do not give it.
-
-    Raises
-    ------
-    FileRefusedError
-        Files of several recordings, files that are missing or do not fit each other, no such tracked point, other
-        units, times that step back.
-    """
+    """Read one recording's tracked points with accelerometer and gyroscope; raises FileRefusedError."""
     bases = list(dict.fromkeys(map(common_base, files)))
     if len({bids_recording(path) for path in files}) > 1:
         raise FileRefusedError(

@@ -93,13 +93,7 @@ def is_channels(head: bytes) -> bool:
 
 
 def read_system(base: Path) -> MotionSystem:
-    """Read the files of one tracking system.
-
-    Raises
-    ------
-    FileRefusedError
-        One is not there, what is no table, no JSON or no number, lines of another length than their heads.
-    """
+    """Read the files of one tracking system; raises FileRefusedError where one is missing or invalid."""
     channels_path, motion_path = _beside(base, CHANNELS), _beside(base, MOTION)
     for path in (channels_path, motion_path):
         if not path.is_file():

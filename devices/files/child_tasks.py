@@ -12,27 +12,16 @@ from typing import BinaryIO
 import pyarrow as pa
 import pyarrow.csv as pcsv
 
-from devices.files.answers import (
-    Array,
-    Details,
-    details_of_block,
-    details_of_document,
-    details_of_findings,
-    details_of_gathered,
-    details_of_refusal,
-    details_of_trial,
-    receive,
-    send,
-)
+from devices.files.answers import Array, Details, details_of, details_of_document, receive, send
 from devices.files.bids_tables import folders_of_scans, tables_beside
 from devices.files.child import GATHER, MEMORY, QUESTION, READ, REFERENCE, REFUSED, SITE, TOML, TRIAL, UNFORESEEN
 from devices.files.limits import forbid_reading, limit_processor_time
-from devices.files.references.answers import details_of_reference
 from devices.files.references.reading import read_reference
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import IN_THIS_PROCESS
 from devices.files.site_files import read_site
 from devices.files.system_calls import refuse_system_calls
+from devices.files.trial import BESIDE_INERTIAL
 
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 IS_LINUX: bool = sys.platform == "linux"
@@ -99,10 +88,8 @@ def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
     """The files that a task may open, and the folders whose names it may list."""
     if asked["task"] not in (TRIAL, GATHER):
         return [Path(asked["path"])], []
-    from devices.files.ximu3_files import QUATERNION  # with SciPy, which is there by now
-
     named = list(map(Path, asked["files"]))
-    beside = [other for path in named for other in (path.with_name(QUATERNION), *tables_beside(path))]
+    beside = [other for path in named for other in (path.with_name(BESIDE_INERTIAL), *tables_beside(path))]
     return [*named, *beside], [folder for path in named for folder in folders_of_scans(path)]
 
 
@@ -110,12 +97,12 @@ def _answer(asked: Details, arrays: list[Array]) -> Details:
     try:
         return {"what": READ, "details": _read(asked, arrays)}
     except FileRefusedError as refusal:
-        return {"what": REFUSED, "details": details_of_refusal(refusal)}
+        return {"what": REFUSED, "details": details_of(refusal, arrays)}
     except OSError as problem:
         why = problem.strerror or type(problem).__name__
         where = str(problem.filename or asked["where"])
         unread = FileRefusedError(where, "the file or folder cannot be read ({why})", "Check the permissions", why=why)
-        return {"what": REFUSED, "details": details_of_refusal(unread)}
+        return {"what": REFUSED, "details": details_of(unread, arrays)}
     except MemoryError:
         arrays.clear()
         return {"what": MEMORY}
@@ -129,10 +116,8 @@ def _read(asked: Details, arrays: list[Array]) -> object:
     if task == TOML:
         return details_of_document(IN_THIS_PROCESS.read_toml(Path(asked["path"])))
     if task == SITE:
-        block, findings = read_site(
-            Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
-        )
-        return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
+        site = Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
+        return details_of(read_site(*site), arrays)
     if task == QUESTION:
         from devices.files.parquet_questions import answer  # with the half of Arrow that only questions need
 
@@ -141,15 +126,15 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         path = Path(asked["path"])
         if not IS_LINUX:
             _limit_reference(path)
-        return details_of_reference(read_reference(path), arrays)
+        return details_of(read_reference(path), arrays)
     files = list(map(Path, asked["files"]))
     if task == GATHER:
-        from devices.files.gathering import gather
+        from devices.files.gathering import gather  # as below
 
-        return details_of_gathered(gather(files))
+        return details_of(gather(files), arrays)
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
-    return details_of_trial(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
+    return details_of(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
 
 
 def _limit_reference(path: Path) -> None:

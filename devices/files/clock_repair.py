@@ -62,25 +62,25 @@ class _WrongRun:
     is_placed: bool
 
 
+def whole_clock(stamps: FloatArray, clock: FileClock, remedy: str) -> RepairedClock:
+    """As `repaired`, of stamps (n,) all of which have to be there; `remedy` is for one that is not."""
+    is_there = np.isfinite(stamps)
+    if not is_there.all():
+        place = clock.place(int(np.argmin(is_there)))
+        raise FileRefusedError.stated_elsewhere(f"{clock.where}, {place}", "a sample has no time", remedy, {})
+    return repaired(stamps, clock)
+
+
+def usual_rate(time_s: FloatArray) -> float | None:
+    """Samples per second of stamps (n,), to a tenth; None of fewer than two."""
+    steps_s = np.diff(time_s)
+    return round(1.0 / float(np.median(steps_s)), 1) if len(steps_s) else None
+
+
 def repaired(
     stamps: FloatArray | Numbers, clock: FileClock, *, slack: float = 0.0, step: float | None = None
 ) -> RepairedClock:
-    """Mend single wrong stamps and runs of them; samples that repeat a stamp are new once.
-
-    Parameters
-    ----------
-    stamps : (n,)
-        In the clock's unit, without turns; NaN where there is none.
-    slack
-        So far back a stamp may lie, because stamps are of arrivals.
-    step
-        From one sample to the next, where it is known.
-
-    Raises
-    ------
-    FileRefusedError
-        The clock steps back and does not return.
-    """
+    """Mend wrong stamps (n,), NaN where there is none; raises FileRefusedError if it steps back for good."""
     mended = np.array(stamps, dtype=np.float64)
     rows = np.flatnonzero(np.isfinite(mended))
     times = mended[rows]
@@ -123,18 +123,7 @@ def steps_back(clock: FileClock, row: int, before: float, after: float) -> FileR
 
 
 def is_later(stamps: FloatArray | Numbers) -> BoolArray:
-    """Which stamps are later than all before them.
-
-    Parameters
-    ----------
-    stamps : (n,)
-        In any unit; NaN where there is none.
-
-    Returns
-    -------
-    (n,)
-        False where there is none.
-    """
+    """Give which stamps are later than all before them; False where NaN."""
     is_there = np.isfinite(stamps)
     if not is_there.all():
         stamps = np.where(is_there, stamps, -np.inf)
@@ -144,25 +133,7 @@ def is_later(stamps: FloatArray | Numbers) -> BoolArray:
 
 
 def unwrapped(table: Table, name: str, turns_at: int, where: str) -> Numbers:
-    """A sensor's counter or clock without its turns, for `repaired`.
-
-    Parameters
-    ----------
-    name
-        Of its column.
-    turns_at
-        The first number that it does not reach.
-
-    Returns
-    -------
-    (n,)
-        From the first one on.
-
-    Raises
-    ------
-    FileRefusedError
-        What is no such number.
-    """
+    """Give a counter or clock without its turns, from the first number on; raises FileRefusedError."""
     raw = table.numbers[name]
     is_count = (raw >= 0) & (raw < turns_at) & (raw == np.floor(raw))
     if not is_count.all():

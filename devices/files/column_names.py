@@ -167,13 +167,7 @@ def is_unit(text: str) -> bool:
 
 
 def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None) -> tuple[SensorColumns, ...]:
-    """The sensors that have acceleration and angular rates about three axes each.
-
-    Raises
-    ------
-    FileRefusedError
-        Two columns that mean the same; its `where` is empty.
-    """
+    """Find sensors with acceleration and rate about three axes; FileRefusedError for two columns alike."""
     reported = units or {}
     meant = {name: meaning for name in names if (meaning := meaning_of(name, reported.get(name, ""))) is not None}
     places: dict[tuple[str, Quantity], dict[str, list[str]]] = {}

@@ -4,7 +4,8 @@ One sensor in each file, or all side by side. The header is the first line that 
 follow. Our own session's columns are among those that are understood. It is asked last of all formats.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 
 from devices.files.column_names import is_unit, sensor_columns
@@ -12,17 +13,13 @@ from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable, named_table_of
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import Table, TextShape, read_csv, shape_of
-from devices.files.trial import ImportedTrial
 
 COMMENT, DELIMITERS = "#", ",;\t"
 OF_OTHERS = frozenset({"packetcounter", "sampletimefine"})  # Xsens and Movella: what their ticks are differs by program
 
 
 def is_csv(path: Path, head: bytes) -> bool:
-    """Whether a file is a table with acceleration and angular rates about three axes of one sensor or more.
-
-    Strict, so that no file of another program comes in by the way of its columns' names alone.
-    """
+    """Give whether a table has acceleration and rates about three axes; strict, so as to claim no other files."""
     if not head or b"\0" in head:
         return False
     try:
@@ -34,23 +31,7 @@ def is_csv(path: Path, head: bytes) -> bool:
     return bool(sensors) and not has_others and (not shape.first or len(shape.first) == len(shape.names))
 
 
-def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold no times.
-
-    Raises
-    ------
-    FileRefusedError
-        What `tables` and `named_columns` refuse of the only file.
-    """
-    return trial_of_tables("csv", files, lambda path: [_table(path)], rate_hz)
-
-
-def _table(path: Path) -> NamedTable:
+def _tables(path: Path) -> list[NamedTable]:
     shape = _shape(path)
 
     def read(required: Collection[str]) -> Table:
@@ -65,7 +46,10 @@ def _table(path: Path) -> NamedTable:
             decimal=shape.decimal,
         )
 
-    return named_table_of(path, shape.names, shape.units, read)
+    return [named_table_of(path, shape.names, shape.units, read)]
+
+
+csv_trial = partial(trial_of_tables, "csv", _tables)
 
 
 def _shape(path: Path) -> TextShape:

@@ -59,15 +59,7 @@ FORMATS: Mapping[str, FileFormat] = {
 
 
 def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
-    """Read the files of one trial, of the format of this name, or of the one that is recognised where it is empty.
-
-    Raises
-    ------
-    FileRefusedError
-        What `recognised` and the reader of the format refuse.
-    OSError
-        A file cannot be read.
-    """
+    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError."""
     for path in files:
         _refuse_missing(path)
     every = list({path.resolve(): path for path in files}.values())
@@ -76,15 +68,7 @@ def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> Impor
 
 
 def recognised(files: Sequence[Path]) -> str:
-    """The format of the files of one trial.
-
-    Raises
-    ------
-    FileRefusedError
-        A file that none of the formats is, or files of several.
-    OSError
-        A file cannot be read.
-    """
+    """Give the format of one trial's files; raises FileRefusedError for an unknown or a mixed one, or OSError."""
     found: dict[str, Path] = {}
     for path in files:
         _refuse_missing(path)
@@ -111,13 +95,7 @@ def recognised(files: Sequence[Path]) -> str:
 
 
 def format_of(path: Path) -> str | None:
-    """The format of a file or folder; None: it is of none of them.
-
-    Raises
-    ------
-    OSError
-        It cannot be read.
-    """
+    """Give the format of a file or folder; None for none; raises OSError where it cannot be read."""
     head = b""
     if path.is_file():
         with path.open("rb") as file:

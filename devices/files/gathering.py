@@ -13,13 +13,7 @@ MOST_FILES = 500  # what is dragged may be a whole disk
 
 
 def gather(paths: Sequence[Path]) -> Gathered:
-    """Put files together to trials, in the order of their names. Of a folder that is of no format, the files in it.
-
-    Raises
-    ------
-    FileRefusedError
-        Nothing is in the folder, or more than anybody imports at once.
-    """
+    """Group files, or a folder's files, to trials by name; raises FileRefusedError for none or too many."""
     refused: list[FileRefusedError] = []
     found: dict[tuple[str, Path, str], list[str]] = {}
     for path in _opened_up(paths):

@@ -30,13 +30,7 @@ class ImportedFiles:
 
 
 def parse_map(text: str) -> dict[Site, str]:
-    """The sites and their files or sensors in `left_thigh=A,left_shank=B`. A name may hold commas.
-
-    Raises
-    ------
-    FileRefusedError
-        Not of this shape, an unknown site, a site twice.
-    """
+    """Parse `left_thigh=A,left_shank=B`, names may hold commas; raises FileRefusedError where it is not so."""
     placement: dict[Site, str] = {}
     for part in re.split(r",(?=\s*\w+\s*=)", text):
         site, equals, value = (piece.strip() for piece in part.partition("="))
@@ -54,22 +48,7 @@ def parse_map(text: str) -> dict[Site, str]:
 
 
 def place_trial(trial: ImportedTrial, placement: Mapping[Site, str], recording: str) -> ImportedFiles:
-    """The sensors of a trial at their sites; time starts with the first sample of any of them.
-
-    Parameters
-    ----------
-    placement
-        Per site a sensor's name or id, with or without underscore, or the path or name of its file, with or without its
-        suffix; `parse_map`.
-    recording
-        The recording's name in findings.
-
-    Raises
-    ------
-    FileRefusedError
-        A site whose sensor is none or several of the trial's or is in a file that could not be read, a sensor at two
-        sites, sensors that share no stretch of time, a clock that jumps forward.
-    """
+    """Place a trial's sensors by name, id or file, time from the first sample; raises FileRefusedError."""
     return place_sensors(
         trial, [(site, _sensor_of(trial, site, value)) for site, value in placement.items()], recording
     )
@@ -174,15 +153,8 @@ def add_recording(
     findings: Sequence[Finding] = (),
     is_simulated: bool = False,
 ) -> Session:
-    """`session` with one recording more, the latest; of a simulated one the whole session is.
-
-    What is known of a sensor stays as it was stated first; rates and their kind only while all recordings agree on
-    them.
-
-    Raises
-    ------
-    FileRefusedError
-        The session has a recording of this name or in this folder, or somebody was measured in it and not in this one.
+    """Add the latest recording (simulated: whole session); first details stay, rates while all agree.
+    Raises FileRefusedError: same name or folder, or somebody was measured in it and not in this one.
     """
     if is_simulated and session.recordings and not session.is_simulated:
         raise FileRefusedError(

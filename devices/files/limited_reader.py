@@ -13,24 +13,13 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import Any, TypeVar
 
 from devices.files import child
-from devices.files.answers import (
-    Array,
-    BrokenAnswerError,
-    Details,
-    block_from,
-    document_from,
-    findings_from,
-    gathered_from,
-    receive,
-    refusal_from,
-    send,
-    trial_from,
-)
+from devices.files.answers import Array, BrokenAnswerError, Details, document_from, receive, send, value_from
 from devices.files.references.answers import reference_from
 from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
@@ -120,13 +109,7 @@ class LimitedReader:
         waiting: Waiting,
         most_bytes: int = MOST_FILE_BYTES,
     ) -> T:
-        """What is made of what the process reports and of the arrays that it names.
-
-        Raises
-        ------
-        FileRefusedError
-            What the process refused, a file that is too large, or a `ReadingEndedError`.
-        """
+        """Make an answer of what the process reports and of its arrays; raises FileRefusedError."""
         sizes = {path: path.stat().st_size for path in files if path.is_file()}
         for path, size in sizes.items():
             if size > most_bytes:
@@ -264,7 +247,7 @@ def _details(answer: Details, where: str) -> Any:
         case {"what": child.READ, "details": details}:
             return details
         case {"what": child.REFUSED, "details": dict(details)}:
-            raise refusal_from(details)
+            raise value_from(FileRefusedError, details)
         case {"what": child.MEMORY}:
             raise ReadingEndedError(where, child.MEMORY)
         case {"what": child.UNFORESEEN, "details": str(details)}:
@@ -292,7 +275,7 @@ class LimitedReading:
             "sensor": file.sensor,
             "is_rate_derived": file.is_rate_derived,
         }
-        return self._reader.ask(task, [file.path], file.where, _site, self.waiting)
+        return self._reader.ask(task, [file.path], file.where, partial(value_from, ReadSite), self.waiting)
 
     def read_trial(self, format_name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
         """As `formats.read_trial` does."""
@@ -303,7 +286,7 @@ class LimitedReading:
             "rate_hz": rate_hz,
         }
         where = ", ".join(path.name for path in files)
-        return self._reader.ask(task, files, where, trial_from, self.waiting)
+        return self._reader.ask(task, files, where, partial(value_from, ImportedTrial), self.waiting)
 
     def read_reference(self, path: Path) -> ReferenceFile:
         """As `references.reading.read_reference` does."""
@@ -311,13 +294,7 @@ class LimitedReading:
         return self._reader.ask(task, [path], path.name, reference_from, self.waiting)
 
     def ask_parquet(self, path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
-        """As `parquet_questions.answer` does; the columns' names, and the columns of each batch of rows.
-
-        Raises
-        ------
-        FileRefusedError
-            The Parquet cannot be read, the question cannot be answered, or takes more memory or time than it may.
-        """
+        """Answer as `parquet_questions.answer`: names, and columns per batch; raises FileRefusedError."""
         task = {"task": child.QUESTION, "path": str(path), "sql": sql, "is_typed": is_typed}
         try:
             return self._reader.ask(task, [path], path.name, _found_rows, self.waiting)
@@ -327,11 +304,11 @@ class LimitedReading:
     def gather(self, paths: Sequence[Path]) -> Gathered:
         """As `gathering.gather` does."""
         task = {"task": child.GATHER, "files": [str(path) for path in paths]}
-        return self._reader.ask(task, (), paths[0].name, _gathered, self.waiting)
+        return self._reader.ask(task, (), paths[0].name, partial(value_from, Gathered), self.waiting)
 
 
 def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...], list[Columns]]:
-    import pyarrow as pa
+    import pyarrow as pa  # home starts without it
 
     try:
         columns = tuple(map(str, details["columns"]))
@@ -345,18 +322,8 @@ def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...],
     return columns, batches
 
 
-def _gathered(details: Any, _arrays: Sequence[Array]) -> Gathered:
-    return gathered_from(details)
-
-
 def _document(details: Any, _arrays: Sequence[Array]) -> dict[str, object]:
     document = document_from(details)
     if not isinstance(document, dict):
         raise BrokenAnswerError("no table")
     return document
-
-
-def _site(details: Any, arrays: Sequence[Array]) -> ReadSite:
-    if not isinstance(details, dict) or not {"block", "findings"} <= details.keys():
-        raise BrokenAnswerError("no site")
-    return block_from(details["block"], arrays), findings_from(details["findings"])

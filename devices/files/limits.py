@@ -61,10 +61,7 @@ class _Ruleset(ctypes.Structure):
 
 
 def limit_this_process(memory_bytes: int) -> None:
-    """Give up for good what reading does not need. To be called before there is a second thread.
-
-    A limit that this system does not know is left out: the deadline of whoever waits for this process remains.
-    """
+    """Give up for good what reading does not need, before a second thread exists; unknown limits are left out."""
     if sys.platform == "win32":
         return
     for limit, most in (
@@ -80,13 +77,7 @@ def limit_this_process(memory_bytes: int) -> None:
 
 
 def limit_processor_time(more_s: float) -> None:
-    """Let the system end this process once it has computed `more_s` longer than until now.
-
-    Parameters
-    ----------
-    more_s
-        Of processor time.
-    """
+    """Let the system end this process once it has computed `more_s` more of processor time."""
     if sys.platform == "win32":
         return
     used = resource.getrusage(resource.RUSAGE_SELF)
@@ -97,15 +88,7 @@ def limit_processor_time(more_s: float) -> None:
 
 
 def forbid_reading(files: Sequence[Path], listed: Sequence[Path] = ()) -> None:
-    """Let Landlock refuse to open for reading what is none of these and not of Python or the system's libraries.
-
-    Parameters
-    ----------
-    files
-        Files, and folders with all that is in them.
-    listed
-        Folders of which the names of what is in them may be read.
-    """
+    """Let Landlock refuse reads except of `files` (folders whole), Python, libraries, and names in `listed`."""
     _restrict(READ_FILE | READ_DIR, {**dict.fromkeys(listed, READ_DIR), **dict.fromkeys((*files, *_own()), 0)})
 
 

@@ -17,6 +17,9 @@ FELT_M_S2 = (7.0, 40.0)
 LIKE_G = (0.7, 1.4)
 MOST_RAD_S = 70.0  # twice the widest range of these sensors, 2000 deg/s
 FEW = 0.999  # of the rates that have to be possible: one damaged sample is no other unit
+NO_GRAVITY = "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2"
+TOO_FAST = "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor"
+RECORD_AGAIN = "Check the sensor's range and calibration with the manufacturer's program, and record again"
 TURNING_RAD_S = 0.2  # below, the noise of rates and orientation is what is compared
 
 
@@ -29,53 +32,25 @@ def check_magnitudes(
     gyr_unit: str = "rad/s",
     is_export: bool = True,
 ) -> None:
-    """Refuse samples whose sizes do not fit the units that they are given in. Missing ones show nothing.
-
-    Parameters
-    ----------
-    acc_m_s2 : (n, 3)
-        In SI units as the file states.
-    gyr_rad_s : (n, 3) or None
-        Likewise; None: derived here, or held to an orientation elsewhere.
-    sensor, where
-        By which a person finds the samples.
-    gyr_unit
-        In which the file states that its rates are.
-    is_export
-        A program wrote the file, and can write it again in another unit; else the sensor did.
-
-    Raises
-    ------
-    FileRefusedError
-        Another unit, or gravity was taken out.
-    """
+    """Refuse samples whose size does not fit their units or lacks gravity; raises FileRefusedError."""
     middle = middle_size(acc_m_s2)
     least, most = FELT_M_S2
+    name, shown = quoted(sensor), f"{middle:.2f}"
     if is_export and LIKE_G[0] < middle < LIKE_G[1]:
         raise FileRefusedError(
             where,
             "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2; the "
             "unit seems to be g",
             "Export the file again in m/s2, or correct the unit",
-            sensor=quoted(sensor),
-            middle=f"{middle:.2f}",
+            sensor=name,
+            middle=shown,
         )
     if not (np.isnan(middle) or least < middle < most):
         if is_export:
             raise FileRefusedError(
-                where,
-                "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2",
-                "Export the file again in m/s2, with gravity included",
-                sensor=quoted(sensor),
-                middle=f"{middle:.2f}",
+                where, NO_GRAVITY, "Export the file again in m/s2, with gravity included", sensor=name, middle=shown
             )
-        raise FileRefusedError(
-            where,
-            "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2",
-            "Check the sensor's range and calibration with the manufacturer's program, and record again",
-            sensor=quoted(sensor),
-            middle=f"{middle:.2f}",
-        )
+        raise FileRefusedError(where, NO_GRAVITY, RECORD_AGAIN, sensor=name, middle=shown)
     if gyr_rad_s is not None:
         _check_rates(gyr_rad_s, sensor, where, gyr_unit, is_export)
 
@@ -85,43 +60,23 @@ def _check_rates(gyr_rad_s: FloatArray, sensor: str, where: str, gyr_unit: str, 
     largest = float(np.quantile(sizes, FEW)) if len(sizes) else 0.0
     if largest <= MOST_RAD_S:
         return
+    name, shown = quoted(sensor), f"{np.degrees(largest):.0f}"
     if is_export and gyr_unit == "rad/s":
         raise FileRefusedError(
             where,
             "the angular rates of {sensor} are in deg/s, not in rad/s",
             "Export the file again in rad/s, or correct the unit",
-            sensor=quoted(sensor),
+            sensor=name,
         )
     if is_export:
         raise FileRefusedError(
-            where,
-            "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
-            "Export the file again in deg/s, or correct the unit",
-            sensor=quoted(sensor),
-            largest=f"{np.degrees(largest):.0f}",
+            where, TOO_FAST, "Export the file again in deg/s, or correct the unit", sensor=name, largest=shown
         )
-    raise FileRefusedError(
-        where,
-        "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
-        "Check the sensor's range and calibration with the manufacturer's program, and record again",
-        sensor=quoted(sensor),
-        largest=f"{np.degrees(largest):.0f}",
-    )
+    raise FileRefusedError(where, TOO_FAST, RECORD_AGAIN, sensor=name, largest=shown)
 
 
 def middle_size(vectors: FloatArray) -> float:
-    """The median length of vectors that are there.
-
-    Parameters
-    ----------
-    vectors : (n, 3)
-        In any unit.
-
-    Returns
-    -------
-    float
-        In the same; NaN where none is there.
-    """
+    """Give the median length of the vectors (n, 3) that are there; NaN where none is."""
     sizes = np.linalg.norm(vectors, axis=1)
     sizes = sizes[np.isfinite(sizes)]
     return float(np.median(sizes)) if len(sizes) else float(np.nan)
@@ -130,24 +85,7 @@ def middle_size(vectors: FloatArray) -> float:
 def times_the_turning(
     gyr_rad_s: FloatArray, q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float
 ) -> float:
-    """How many times as fast as the orientation turns the rates are: 1 in rad/s, 57 where they are in deg/s.
-
-    Parameters
-    ----------
-    gyr_rad_s : (n, 3)
-        In sensor axes.
-    q_earth_from_sensor : (n, 4)
-        Unit quaternions, scalar first.
-    counter : (n,)
-        Ascending packet numbers.
-    rate_hz
-        Packets per second.
-
-    Returns
-    -------
-    float
-        The median while it turns; NaN where it does not.
-    """
+    """Give rates over the orientation's turning, median: 1 in rad/s, 57 in deg/s; NaN where it does not turn."""
     speed = np.linalg.norm(gyr_rad_s, axis=1)
     turned = np.linalg.norm(derive_rates(q_earth_from_sensor, counter, rate_hz), axis=1)
     is_turning = np.isfinite(speed) & (turned > TURNING_RAD_S)

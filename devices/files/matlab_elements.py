@@ -26,15 +26,7 @@ class BrokenElementsError(ValueError):
 
 
 def check_elements(content: bytes) -> None:
-    """Look through all elements of a file.
-
-    Raises
-    ------
-    BrokenElementsError
-        One is of no type that it can have at its place, or does not fit where it is.
-    zlib.error
-        One that is packed is damaged.
-    """
+    """Check all elements of a file; raises BrokenElementsError for a wrong type or place, or zlib.error."""
     order = ">" if content[HEAD_BYTES - 2 : HEAD_BYTES] == BIG_ENDIAN else "<"
     for kind, element in _elements(memoryview(content)[HEAD_BYTES:], order):
         _check_variable(kind, element, order)

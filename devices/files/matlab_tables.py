@@ -10,6 +10,7 @@ Held against files that MATLAB itself wrote (of versions 5 to 7.3, small ones, w
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,6 @@ from devices.files.matlab_variables import ClosedObject, Variable, read_matlab
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.trial import ImportedTrial
 
 OF_THREE_AXES = (Quantity.ACC, Quantity.FREE_ACC, Quantity.GYR, Quantity.MAG)
 OF_ALL = (Quantity.TIME, Quantity.COUNTER)  # what a structure may give for those that it holds
@@ -52,22 +52,6 @@ class _Group:
     rate_hz: float | None = None
     left_out: list[str] = field(default_factory=list)
     inner: list[tuple[str, Mapping[str, Variable]]] = field(default_factory=list)
-
-
-def matlab_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold neither times nor a rate.
-
-    Raises
-    ------
-    FileRefusedError
-        What `matlab_variables` and `named_columns` refuse of the only file, and one whose tables are objects.
-    """
-    return trial_of_tables("matlab", files, _tables, rate_hz)
 
 
 def _tables(path: Path) -> Sequence[NamedTable]:
@@ -106,6 +90,9 @@ def _tables(path: Path) -> Sequence[NamedTable]:
     ]
 
 
+matlab_trial = partial(trial_of_tables, "matlab", _tables)
+
+
 def _groups(path: tuple[str, ...], variables: Mapping[str, Variable], around: _Group) -> Iterator[_Group]:
     """A structure, with times, rate and units of those around it, and all structures in it."""
     group = _group(path, variables)
@@ -123,7 +110,8 @@ def _groups(path: tuple[str, ...], variables: Mapping[str, Variable], around: _G
 
 def _group(path: tuple[str, ...], variables: Mapping[str, Variable]) -> _Group:
     group = _Group(path)
-    texts: list[list[str]] = [value for value in variables.values() if isinstance(value, list) and _are_texts(value)]
+    lists = [value for value in variables.values() if isinstance(value, list) and len(value) > 1]
+    texts: list[list[str]] = [value for value in lists if all(isinstance(one, str) for one in value)]
     reported: dict[str, str] = {}
     for name, value in variables.items():
         if isinstance(value, str):
@@ -193,10 +181,6 @@ def _is_of_axes(meaning: NamedQuantity | None) -> bool:
 def _is_of_all(name: str) -> bool:
     meaning = meaning_of(name)
     return meaning is not None and meaning.quantity in OF_ALL
-
-
-def _are_texts(value: list[Any]) -> bool:
-    return len(value) > 1 and all(isinstance(one, str) for one in value)
 
 
 def _closed(variables: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -62,13 +62,7 @@ def is_matlab(_path: Path, head: bytes) -> bool:
 
 
 def read_matlab(path: Path) -> dict[str, Variable]:
-    """All variables of one file by their names.
-
-    Raises
-    ------
-    FileRefusedError
-        It is damaged, of another version, or the library for version 7.3 is not installed.
-    """
+    """Read all variables by name; FileRefusedError if damaged, of other version, or without 7.3 library."""
     with path.open("rb") as file:
         head = file.read(HDF5_AT + len(SIGNATURE))
     if not is_matlab(path, head):
@@ -111,7 +105,8 @@ class _Version5(_MatlabFile):
             variables = {}
             for name, value in read.items():
                 if not name.startswith("__"):
-                    called = _own_name(value) if name == "None" else name
+                    # what SciPy calls objects of classes in some versions
+                    called = (_field(value, 0) or "?") if name == "None" else name
                     variables[called] = self._plain(value, 0)
             return variables
         except (*DAMAGES, MatReadError) as error:
@@ -122,7 +117,7 @@ class _Version5(_MatlabFile):
     def _plain(self, value: Any, depth: int) -> Variable:
         self._count(depth)
         if isinstance(value, MatlabOpaque):
-            return ClosedObject(_class_of(value))
+            return ClosedObject(_field(value, 2))
         if isinstance(value, MatlabFunction) or not isinstance(value, np.ndarray):
             return None
         if value.dtype.names:
@@ -199,15 +194,6 @@ def _numbers(values: Any) -> FloatArray | None:
     if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiub" or values.ndim > 2:
         return None
     return np.atleast_2d(values).astype(np.float64)
-
-
-def _own_name(value: Any) -> str:
-    """The name of a variable that SciPy calls "None", as it does with objects of classes in some versions."""
-    return _field(value, 0) or "?"
-
-
-def _class_of(value: Any) -> str:
-    return _field(value, 2)
 
 
 def _field(value: Any, number: int) -> str:

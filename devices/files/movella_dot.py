@@ -22,7 +22,14 @@ from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.clock_repair import FileClock, repaired, unwrapped
 from devices.files.magnitudes import check_magnitudes, times_the_turning
-from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by, with_gravity
+from devices.files.orientation_rates import (
+    Numbers,
+    derive_rates,
+    quaternions,
+    rate_kind_by,
+    rates_of_turns,
+    with_gravity,
+)
 from devices.files.refusal import FileRefusedError
 from devices.files.site_names import without_site
 from devices.files.spreadsheets import ZIP, read_xlsx, sheet_states
@@ -76,11 +83,7 @@ class DotFile:
     ticks: Numbers
     tick_s: float
     counter: Numbers
-    acc_m_s2: FloatArray
-    gyr_rad_s: FloatArray
-    q_earth_from_sensor: FloatArray | None
-    mag: FloatArray | None
-    is_rate_derived: bool
+    block: ImuBlock
     is_gravity_added: bool
     of_clock: tuple[Finding, ...]
 
@@ -103,23 +106,13 @@ def is_movella_dot(path: Path, head: bytes) -> bool:
 
 
 def dot_recording(path: Path) -> str:
-    """What the names of a recording's files have in common: for those the app calls by tag, address and time, the time.
-
-    The milliseconds, at which each sensor's file was begun, are left out.
-    """
+    """Give what the names of a recording's files share: of the app's, the time, without milliseconds."""
     dated = re.fullmatch(r".*?(?:_[0-9A-F]{12}_(\d{8}_\d{6})|_(\d{8}_\d{6})_\d{3})", path.stem)
     return dated[1] or dated[2] if dated else without_site(path.stem)
 
 
 def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
-    """Read one file.
-
-    Raises
-    ------
-    FileRefusedError
-        None of these, no specific force and nothing to make it of, neither rates nor orientation, times that step
-        back, other units.
-    """
+    """Read one file; raises FileRefusedError without force or rates, with other units or times stepping back."""
     where = path.name
     settings, table = _read(path, where)
     ticks = unwrapped(table, TIME, TICKS_TURN_AT, where)
@@ -140,11 +133,15 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     check_magnitudes(acc, None, path.stem, where)  # rates in deg/s are recognised by the orientation
     is_rate_derived = not (set(GYR) <= set(table.numbers) or set(TURNS) <= set(table.numbers))
     ids = tuple(dict.fromkeys([*_named(path), *filter(None, [settings.get(TAG)])]))
+    serial = (*ids, path.stem)[0]
+    since_s = (ticks - ticks[:1]) * tick_s
+    mag = table.matrix(MAG)[is_new] if set(MAG) <= set(table.numbers) else None
+    block = ImuBlock(serial, since_s, gyr, acc, q, mag, is_rate_derived)
     return DotFile(
         path=path,
         ids=ids,
         info=SensorInfo(
-            serial=(*ids, path.stem)[0],
+            serial=serial,
             model="Movella DOT",
             firmware=settings.get("FirmwareVersion", ""),
             rate_hz=rate_hz,
@@ -155,32 +152,14 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
         ticks=ticks,
         tick_s=tick_s,
         counter=counter,
-        acc_m_s2=acc,
-        gyr_rad_s=gyr,
-        q_earth_from_sensor=q,
-        mag=table.matrix(MAG)[is_new] if set(MAG) <= set(table.numbers) else None,
-        is_rate_derived=is_rate_derived,
+        block=block,
         is_gravity_added=is_gravity_added,
         of_clock=clock.findings,
     )
 
 
 def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The files of one trial, one sensor in each.
-
-    Synchronised sensors share one clock, and their samples stand at its times. Others start together at zero, each
-    on a clock of its own: how far they are apart is for the motion to show.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where neither the files nor their times give it.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_dot` refuses of the only file.
-    """
+    """Read a trial, one sensor per file; unsynchronised sensors keep their own clock; raises FileRefusedError."""
     read, unread = read_each(files, lambda path: read_dot(path, rate_hz), _named)
     starts_s = _starts_s(read)
     is_one_grid = _is_one_grid(read, starts_s)
@@ -188,16 +167,7 @@ def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     sensors = []
     for file, start_s in zip(read, starts_s, strict=True):
         info = replace(file.info, clock=(CLOCK if is_one_grid else "") if is_shared else file.info.serial)
-        since_s = (file.ticks - file.ticks[:1]) * file.tick_s
-        block = ImuBlock(
-            sensor=info.serial,
-            time_s=since_s + start_s if is_shared else since_s,
-            gyr_rad_s=file.gyr_rad_s,
-            acc_m_s2=file.acc_m_s2,
-            q_earth_from_sensor=file.q_earth_from_sensor,
-            mag=file.mag,
-            is_rate_derived=file.is_rate_derived,
-        )
+        block = replace(file.block, time_s=file.block.time_s + start_s) if is_shared else file.block
         findings = tuple(_findings(file, is_shared))
         sensors.append(ImportedSensor(file.path.name, file.ids, str(file.path), block, info, findings))
     return ImportedTrial("movella-dot", tuple(sensors), tuple(unread), started=read[0].started if read else "")
@@ -279,11 +249,7 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         return None
     about_xyz = table.matrix(EULER)
     is_there = np.isfinite(about_xyz.sum(axis=1)) & (np.abs(about_xyz) <= 360.0).all(axis=1)
-    q = np.full((len(about_xyz), 4), np.nan)
-    if is_there.any():
-        turn = Rotation.from_euler("ZYX", about_xyz[is_there][:, ::-1], degrees=True)
-        q[is_there] = turn.as_quat(scalar_first=True)
-    return q
+    return quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), about_xyz[:, ::-1], is_there)
 
 
 def _refuse_no_rotation(q: FloatArray, table: Table, where: str) -> None:
@@ -308,11 +274,7 @@ def _rates(
         turns = table.matrix(TURNS)
         _refuse_no_rotation(turns, table, where)
         turns = turns[is_new]
-        gyr = np.full((len(turns), 3), np.nan)
-        is_there = np.isfinite(turns.sum(axis=1))
-        if is_there.any():
-            gyr[is_there] = Rotation.from_quat(turns[is_there], scalar_first=True).as_rotvec() * rate_hz
-        return gyr, RateKind.AVERAGED
+        return rates_of_turns(turns, np.isfinite(turns.sum(axis=1)), rate_hz), RateKind.AVERAGED
     if q is None:
         raise FileRefusedError(
             where, "there are neither angular rates (Gyr_X) nor an orientation to derive them from", MEASURE_AGAIN
@@ -371,7 +333,7 @@ def _is_one_grid(files: Sequence[DotFile], starts_s: Sequence[float]) -> bool:
 
 
 def _findings(file: DotFile, is_shared: bool) -> Iterator[Finding]:
-    if file.is_rate_derived:
+    if file.block.is_rate_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if file.is_gravity_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")

@@ -38,7 +38,7 @@ from devices.drivers.xsens_mti import (
 )
 from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.magnitudes import check_magnitudes
-from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
+from devices.files.orientation_rates import Numbers, derive_rates, rates_of_turns, with_gravity
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
@@ -84,34 +84,13 @@ def is_mti_stream(path: Path, head: bytes) -> bool:
 
 
 def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, each in a file of its own.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second, for streams that contain a counter and no time.
-
-    Raises
-    ------
-    FileRefusedError
-        No motion was sent, or nothing that gives its time, in the only file.
-    OSError
-        A file cannot be read.
-    """
+    """Read one trial's sensors, a file each; raises FileRefusedError if the only file has no motion or time."""
     sensors, unread = read_each(files, lambda path: _sensor(path, rate_hz))
     return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 
 
 def read_mti_stream(path: Path) -> MtiStream:
-    """Read all messages of a stream; damaged stretches are passed over.
-
-    Raises
-    ------
-    FileRefusedError
-        It holds messages of the older kind alone, or none of motion.
-    OSError
-        The file cannot be read.
-    """
+    """Read a stream's messages, passing over damaged stretches; FileRefusedError if old ones, or no motion."""
     framer, rows = XbusFramer(_ANSWERS), _Rows()
     with path.open("rb") as file:
         while piece := file.read(PIECE):
@@ -249,9 +228,7 @@ def _rates(
     turn = stream.turn[is_new]
     is_there = np.isfinite(turn).all(axis=1) & (np.abs(np.linalg.norm(turn, axis=1) - 1.0) < 0.05)
     if is_there.any():
-        rate = np.full((len(turn), 3), np.nan)
-        rate[is_there] = Rotation.from_quat(turn[is_there], scalar_first=True).as_rotvec() * rate_hz
-        return rate, False
+        return rates_of_turns(turn, is_there, rate_hz), False
     assert q is not None  # of rows without rate and turn
     return derive_rates(q, counter, rate_hz), True
 

@@ -54,13 +54,7 @@ def is_mvnx(_path: Path, head: bytes) -> bool:
 
 
 def read_mvnx(path: Path) -> MvnxFile:
-    """Read one file, whose frames come one after the other, so that it need not be held as a whole.
-
-    Raises
-    ------
-    FileRefusedError
-        No XML, several people, no sensors, frames whose numbers are none, values that are none or too few.
-    """
+    """Read one file frame by frame; raises FileRefusedError for no XML, several people, or invalid frames."""
     found = MvnxFile(path.name)
     subjects = 0
     open_elements: list[ET.Element] = []
@@ -91,19 +85,7 @@ def read_mvnx(path: Path) -> MvnxFile:
 
 
 def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file, by the segments they were worn on.
-
-    Parameters
-    ----------
-    rate_hz
-        Frames per second where the file does not give them.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_mvnx` refuses, several files, no orientation or acceleration, other units, an unknown frame rate,
-        frames whose numbers step back.
-    """
+    """Read one trial's sensors by segment, all in one file; raises FileRefusedError where one cannot be read."""
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),

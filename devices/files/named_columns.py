@@ -40,19 +40,7 @@ NAME_THEM = (
 
 
 def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedSensor]:
-    """The sensors of a table: SI units, seconds on the clock of its stamps.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second as somebody entered it; None: nobody did.
-
-    Raises
-    ------
-    FileRefusedError
-        No sensor, two columns that mean the same, units that do not match what is given or that cannot be
-        determined, neither times nor a rate, times that step back.
-    """
+    """Give a table's sensors, SI, seconds by its stamps; FileRefusedError for no sensor, bad units or times."""
     try:
         found = sensor_columns(list(table.columns), table.units)
     except FileRefusedError as refusal:
@@ -70,15 +58,12 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
 
 
 def trial_of_tables(
-    format_name: str, files: Sequence[Path], read: Callable[[Path], Sequence[NamedTable]], rate_hz: float | None
+    format_name: str,
+    read: Callable[[Path], Sequence[NamedTable]],
+    files: Sequence[Path],
+    rate_hz: float | None = None,
 ) -> ImportedTrial:
-    """The sensors of several files of one trial; `read` gives the tables of each.
-
-    Raises
-    ------
-    FileRefusedError
-        What is refused of the only file that there is.
-    """
+    """Read the sensors of several files of one trial; raises FileRefusedError if the only file is refused."""
     tables, unread = read_each(
         files, lambda path: [(table.called, sensors_of_table(table, rate_hz)) for table in read(path)]
     )

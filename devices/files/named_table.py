@@ -14,57 +14,25 @@ from devices.files.tables import Table
 class NamedTable:
     """Columns of one table or file, all that is known about them, and where they are.
 
-    Attributes
-    ----------
-    columns : name -> (n,)
-        Numbers, NaN where empty; of one sensor all of one length.
-    units
-        Of columns whose unit is not in their name.
-    where, file
-        The file's name in refusals, and its path.
-    called
-        The sensor's name where the columns name none.
-    place
-        Where a row is in the file ("line 12").
-    rate_hz
-        Samples per second as the file gives it; None where it does not.
-    time_s : (n,) or None
-        Stamps in seconds that the file keeps beside its columns.
-    left_out
-        Columns that were not even read as numbers.
-    findings
-        What its reader noticed, without a place.
+    `where`, `file`: the file's name in refusals, and its path.
     """
 
-    columns: Mapping[str, FloatArray]
+    columns: Mapping[str, FloatArray]  # name -> (n,): numbers, NaN where empty; of one sensor all of one length
     where: str
     file: str
-    called: str
-    place: Callable[[int], str]
-    units: Mapping[str, str] = field(default_factory=dict)
-    rate_hz: float | None = None
-    time_s: FloatArray | None = None
-    left_out: Sequence[str] = ()
-    findings: Sequence[Finding] = ()
+    called: str  # the sensor's name where the columns name none
+    place: Callable[[int], str]  # where a row is in the file ("line 12")
+    units: Mapping[str, str] = field(default_factory=dict)  # of columns whose unit is not in their name
+    rate_hz: float | None = None  # samples per second as the file gives it; None where it does not
+    time_s: FloatArray | None = None  # (n,) or None: stamps in seconds that the file keeps beside its columns
+    left_out: Sequence[str] = ()  # columns that were not even read as numbers
+    findings: Sequence[Finding] = ()  # what its reader noticed, without a place
 
 
 def named_table_of(
     path: Path, names: Sequence[str], units: Mapping[str, str], read: Callable[[Collection[str]], Table]
 ) -> NamedTable:
-    """The columns of sensors in a file that is one table.
-
-    Parameters
-    ----------
-    names, units
-        Of all its columns; units of those whose unit is not in their name.
-    read
-        Reads the columns of these names as numbers.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read` refuses, two columns that mean the same.
-    """
+    """Read the sensors' columns of a file that is one table; raises FileRefusedError for two alike."""
     required = {name for one in sensor_columns(list(names), units) for name in one.names()}
     table = read(required)
     return NamedTable(

@@ -33,22 +33,7 @@ class Stamps:
 def stamps_of(
     table: NamedTable, named: SensorColumns, asked_hz: float | None, is_there: BoolArray, findings: list[Finding]
 ) -> Stamps:
-    """The times of one sensor's samples.
-
-    Parameters
-    ----------
-    asked_hz
-        Samples per second as somebody entered it; None: nobody did.
-    is_there : (n,)
-        The rows of the table that hold samples of this sensor.
-    findings
-        What was guessed is added to them.
-
-    Raises
-    ------
-    FileRefusedError
-        Neither times nor a rate, two rates, a unit that nothing gives, times that are missing, step back or repeat.
-    """
+    """Give the times of rows that `is_there` (n,), noting guesses; raises FileRefusedError without any."""
     reported_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
     if table.time_s is not None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.clock_repair import FileClock, repaired
+from devices.files.clock_repair import FileClock, whole_clock
 from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
@@ -48,13 +48,7 @@ def is_opensim_orientations(_path: Path, head: bytes) -> bool:
 
 
 def read_opensim_orientations(path: Path) -> OrientationTable:
-    """Read one file.
-
-    Raises
-    ------
-    FileRefusedError
-        No such table, a sensor twice, lines of another length, what is no number or no rotation, times that step back.
-    """
+    """Read one file; raises FileRefusedError for invalid tables, sensors twice or times that step back."""
     where = path.name
     names: list[str] = []
     rows: list[list[float]] = []
@@ -83,10 +77,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
     values = np.array(rows, dtype=np.float64).reshape(len(rows), 1 + 4 * (len(names) - 1))
     values[~np.isfinite(values)] = np.nan
     time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), len(names) - 1, 4)
-    is_empty = np.isnan(time_s)
-    if is_empty.any():
-        raise FileRefusedError(f"{where}, line {lines[int(np.argmax(is_empty))]}", "a sample has no time", EXPORT_AGAIN)
-    clock = repaired(time_s, FileClock(where, lambda row: f"line {lines[row]}", TIME))
+    clock = whole_clock(time_s, FileClock(where, lambda row: f"line {lines[row]}", TIME), EXPORT_AGAIN)
     is_wrong = (np.abs(np.linalg.norm(q, axis=2) - 1.0) > ROTATION_ERROR).any(axis=1)
     if is_wrong.any():
         line = lines[int(np.argmax(is_wrong))]
@@ -96,18 +87,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
 
 
 def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file.
-
-    Parameters
-    ----------
-    rate_hz
-        Rows per second where there are too few to determine it.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_opensim_orientations` refuses, several files, uneven times, of which no rates can be derived.
-    """
+    """Read one trial's sensors, all in one file; raises FileRefusedError, also where times are uneven."""
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),

@@ -1,10 +1,12 @@
 """What a device's own orientation shows: angular rates, which of two kinds its gyroscope's are, and gravity."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.samples import FloatArray, RateKind
+from core.samples import BoolArray, FloatArray, RateKind
 
 Numbers = NDArray[np.int64]
 GRAVITY_M_S2 = 9.81
@@ -12,27 +14,9 @@ CLEARLY = 0.6  # of the other's error: then the rates are of this kind and not o
 
 
 def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float) -> FloatArray:
-    """Angular rate at the instant of every sample, (n, 3) in sensor axes, from the orientation, (n, 4).
-
-    Around a sample the orientation is a curve of rotation vectors in that sample's own axes, and the rate is the slope
-    of this curve where it passes zero. The slope is the central difference over two samples to each side (fourth
-    order: 0.2 % low at a tenth of the sampling rate), or over one where a second is missing. Both are symmetric about
-    the stamp: the rate belongs to it and not to an instant half a sample beside it. Samples at a border or gap have no
-    sample on one side, and no rate.
-
-    Parameters
-    ----------
-    q_earth_from_sensor : (n, 4)
-        Unit quaternions, scalar first.
-    counter : (n,)
-        Ascending packet numbers.
-    rate_hz
-        Packets per second.
-
-    Returns
-    -------
-    (n, 3)
-        rad/s, in sensor axes; NaN where a sample beside it is missing.
+    """Derive rates (n, 3), rad/s, in sensor axes from orientations (n, 4); NaN where an adjacent sample is missing.
+    The slope of rotation vectors at each stamp: fourth-order central difference over two samples to a side
+    (0.2 % low at a tenth of the sampling rate), or over one where a second is missing.
     """
     before_2, before, after, after_2 = (turn_to(q_earth_from_sensor, counter, steps) for steps in (-2, -1, 1, 2))
     over_two = (8.0 * (after - before) - (after_2 - before_2)) * rate_hz / 12.0
@@ -43,24 +27,7 @@ def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: flo
 def rate_kind_by(
     q_earth_from_sensor: FloatArray, gyr_rad_s: FloatArray, counter: Numbers, rate_hz: float
 ) -> RateKind | None:
-    """Which rate of the orientation the gyroscope's agrees with by far: that at the stamp or the mean before it.
-
-    Parameters
-    ----------
-    q_earth_from_sensor : (n, 4)
-        Unit quaternions, scalar first.
-    gyr_rad_s : (n, 3)
-        In sensor axes.
-    counter : (n,)
-        Ascending packet numbers.
-    rate_hz
-        Packets per second.
-
-    Returns
-    -------
-    RateKind or None
-        None: neither by far, or there is less than a second of data.
-    """
+    """Give whether rates agree by far with those at the stamp or the mean before; None: neither, or under 1 s."""
     at_stamp = derive_rates(q_earth_from_sensor, counter, rate_hz)
     before = -turn_to(q_earth_from_sensor, counter, -1) * rate_hz
     errors = [np.linalg.norm(gyr_rad_s - rate, axis=1) for rate in (at_stamp, before)]
@@ -74,22 +41,7 @@ def rate_kind_by(
 
 
 def turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
-    """The rotation vector from each orientation to the one `steps` packets later.
-
-    Parameters
-    ----------
-    q : (n, 4)
-        Unit quaternions, scalar first, earth from sensor.
-    counter : (n,)
-        Ascending packet numbers.
-    steps
-        Negative: packets before it.
-
-    Returns
-    -------
-    (n, 3)
-        rad, in sensor axes; NaN where there is no such packet.
-    """
+    """Give the rotation vector (n, 3), rad, from each orientation to that `steps` packets later; NaN if none."""
     turn = np.full((len(q), 3), np.nan)
     n = abs(steps)
     here, there = (slice(None, -n), slice(n, None)) if steps > 0 else (slice(n, None), slice(None, -n))
@@ -100,25 +52,26 @@ def turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
     return turn
 
 
+def rates_of_turns(turns: FloatArray, is_there: BoolArray, rate_hz: float) -> FloatArray:
+    """Angular rates (n, 3), rad/s, of what a sensor turned by since the sample before, quaternions (n, 4)."""
+    rate = np.full((len(turns), 3), np.nan)
+    if is_there.any():
+        rate[is_there] = Rotation.from_quat(turns[is_there], scalar_first=True).as_rotvec() * rate_hz
+    return rate
+
+
+def quaternions(make: Callable[[FloatArray], Rotation], values: FloatArray, is_there: BoolArray) -> FloatArray:
+    """Orientations (n, 4), scalar first, that `make` makes of those values (n, ...) that are there; else NaN."""
+    q = np.full((len(values), 4), np.nan)
+    if is_there.any():
+        q[is_there] = make(values[is_there]).as_quat(scalar_first=True)
+    return q
+
+
 def with_gravity(
     free_m_s2: FloatArray, q_earth_from_sensor: FloatArray, gravity_m_s2: float = GRAVITY_M_S2
 ) -> FloatArray:
-    """Specific force in sensor axes, of acceleration in earth axes from which gravity was taken out.
-
-    Parameters
-    ----------
-    free_m_s2 : (..., 3)
-        In earth axes, z up.
-    q_earth_from_sensor : (..., 4)
-        Unit quaternions, scalar first.
-    gravity_m_s2
-        That was taken out.
-
-    Returns
-    -------
-    (..., 3)
-        m/s2; NaN where acceleration or orientation is missing.
-    """
+    """Give specific force in sensor axes from free acceleration in earth axes, z up; NaN where missing."""
     felt = free_m_s2 + np.array([0.0, 0.0, gravity_m_s2])
     force = np.full_like(felt, np.nan)
     is_there = np.isfinite(felt).all(axis=-1) & np.isfinite(q_earth_from_sensor).all(axis=-1)

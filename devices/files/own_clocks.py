@@ -10,16 +10,7 @@ LEAST_COMMON = 0.5  # of the shortest recording, during which all of one trial h
 
 
 def with_own_clocks(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:
-    """Name each sensor's clock, so that the motion has to show how far it is off, and let the trial begin at 0 s.
-
-    Where the times that the clocks give cannot be of one trial, each recording begins with the others, which is
-    reported.
-
-    Parameters
-    ----------
-    sensors
-        Those of one trial, on the clocks of their own.
-    """
+    """Name each sensor's own clock and begin the trial at 0 s; without common time, recordings begin together."""
     filled = [one for one in sensors if len(one.block)]
     if len(filled) < 2:
         return from_zero(sensors)
@@ -34,12 +25,6 @@ def with_own_clocks(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:
 
 
 def from_zero(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:
-    """Let the times of sensors that share a clock begin at 0 s with the first of them.
-
-    Parameters
-    ----------
-    sensors
-        Stamps in seconds.
-    """
+    """Let the times of sensors that share a clock begin at 0 s with the first of them."""
     start_s = min((float(one.block.time_s[0]) for one in sensors if len(one.block)), default=0.0)
     return [replace(one, block=replace(one.block, time_s=one.block.time_s - start_s)) for one in sensors]

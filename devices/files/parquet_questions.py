@@ -48,18 +48,7 @@ LOCKED: Mapping[str, str | bool | int] = {
 
 
 def answer(path: Path, sql: str, is_typed: bool, arrays: "list[Array]") -> "Details":
-    """Answer a question; what is found goes into `arrays` as an Arrow stream.
-
-    Parameters
-    ----------
-    is_typed
-        Whether somebody typed it: it may then be one SELECT and nothing else.
-
-    Raises
-    ------
-    FileRefusedError
-        The Parquet cannot be read, or the question cannot be answered.
-    """
+    """Answer a question into `arrays`, as Arrow; typed ones must be one SELECT; raises FileRefusedError."""
     with _opened(path) as connection:
         try:
             if is_typed:

@@ -3,7 +3,7 @@
 One sensor in each file, or all side by side. A unit may stand in a column's name or in its metadata ("unit", "units").
 """
 
-from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import pyarrow as pa
@@ -14,7 +14,6 @@ from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable, named_table_of
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import COPY_AGAIN, read_parquet
-from devices.files.trial import ImportedTrial
 
 SIGNATURE = b"PAR1"
 UNIT_KEYS = (b"unit", b"units")
@@ -31,26 +30,13 @@ def is_parquet(path: Path, head: bytes) -> bool:
         return False
 
 
-def parquet_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold no times.
-
-    Raises
-    ------
-    FileRefusedError
-        What `tables` and `named_columns` refuse of the only file.
-    """
-    return trial_of_tables("parquet", files, lambda path: [_table(path)], rate_hz)
-
-
-def _table(path: Path) -> NamedTable:
+def _tables(path: Path) -> list[NamedTable]:
     units = _columns(path)
     reported = {name: unit for name, unit in units.items() if unit}
-    return named_table_of(path, list(units), reported, lambda required: read_parquet(path, path.name, required))
+    return [named_table_of(path, list(units), reported, lambda required: read_parquet(path, path.name, required))]
+
+
+parquet_trial = partial(trial_of_tables, "parquet", _tables)
 
 
 def _columns(path: Path) -> dict[str, str]:

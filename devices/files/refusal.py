@@ -19,7 +19,7 @@ class FileRefusedError(Exception):
 
     @classmethod
     def stated_elsewhere(cls, where: str, what: str, remedy: str, values: Mapping[str, str]) -> "FileRefusedError":
-        """The refusal of another process, in its words."""
+        """The refusal of another process, or with the remedy of whoever asks, in their words."""
         return cls(where, what, remedy, **values)
 
 

@@ -187,24 +187,12 @@ SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in LEG_
 
 
 def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
-    """What the file contains: a session without recordings, and the recordings to read.
-
-    Raises
-    ------
-    FileRefusedError
-        What `parse_toml` and `parse_document` refuse.
-    """
+    """Give the session without recordings, and the recordings to read; raises FileRefusedError."""
     return parse_document(parse_toml(text))
 
 
 def parse_toml(text: str) -> dict[str, object]:
-    """The tables of the file, whatever they say.
-
-    Raises
-    ------
-    FileRefusedError
-        Not TOML, or tables within tables without end.
-    """
+    """Give the file's tables; raises FileRefusedError for no TOML or endless nesting."""
     try:
         document: dict[str, object] = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -215,14 +203,7 @@ def parse_toml(text: str) -> dict[str, object]:
 
 
 def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
-    """What the tables say: a session without recordings, and the recordings to read.
-
-    Raises
-    ------
-    FileRefusedError
-        Another format, no recording, a recording without name, kind or folder or with those of another, a value of the
-        wrong type or out of range.
-    """
+    """Give the session and the recordings to read; raises FileRefusedError for values missing or out of range."""
     _check_format(document)
     tables = {name: _table(document, name, f"[{name}]") for name in TABLES}
     session_values, session_unknown = _take(tables["session"], SESSION, "[session]")
@@ -255,13 +236,7 @@ def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
 
 
 def render(session: Session, plans: Sequence[Plan]) -> str:
-    """The text that `parse` reads as this session: keys in the order of the format, unknown ones last in their table.
-
-    Raises
-    ------
-    FileRefusedError
-        A session that could not be read back: see `parse`.
-    """
+    """Write the text `parse` reads back, keys in format order, unknown ones last; raises FileRefusedError."""
     nested = {key: _unknown_table(session, key) for key in TABLES}
     zero_deg = {joint.value: round(math.degrees(value), 9) for joint, value in session.zero_rad.items()}
     sensors = {site.value: _render(info, SENSOR) | dict(info.unknown) for site, info in session.sensors.items()}
@@ -345,14 +320,16 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         values, unknown = _take(table, RECORDING, where)
         sensors = _site_texts(unknown.get("sensors"))
         rates_derived = _site_list(unknown.get("rates_derived"))
-        unknown = {key: value for key, value in unknown.items() if not (key == "sensors" and sensors)}
-        unknown = {key: value for key, value in unknown.items() if not (key == "rates_derived" and rates_derived)}
         left_out_s = _left_out(unknown.get("strides_left_out"))
-        unknown = {key: value for key, value in unknown.items() if not (key == "strides_left_out" and left_out_s)}
-        alignment = alignment_of_table(unknown.get("alignment"))
-        unknown = {key: value for key, value in unknown.items() if not (key == "alignment" and alignment)}
-        test = planned_of_table(unknown)
-        unknown = {key: value for key, value in unknown.items() if not (key in TABLE_KEYS and test)}
+        alignment, test = alignment_of_table(unknown.get("alignment")), planned_of_table(unknown)
+        understood: dict[str, object] = {
+            "sensors": sensors,
+            "rates_derived": rates_derived,
+            "strides_left_out": left_out_s,
+            "alignment": alignment,
+            **dict.fromkeys(TABLE_KEYS, test),
+        }
+        unknown = {key: value for key, value in unknown.items() if not understood.get(key)}
         recording = Recording(imu={}, left_out_s=left_out_s, alignment=alignment, test=test, unknown=unknown, **values)
         for other in (plan.recording for plan in plans):
             for key in ("name", "folder"):

@@ -80,13 +80,7 @@ class CardPart:
 
 
 def is_card(head: bytes) -> bool:
-    """Whether a file that begins so is of a Shimmer3's card: its head is meant, and its first times are a period apart.
-
-    Parameters
-    ----------
-    head
-        The first bytes, all of a file that is shorter.
-    """
+    """Give whether first bytes are of a Shimmer3's card: a valid head, and first times a period apart."""
     if len(head) < HEAD or int.from_bytes(head[BOARD : BOARD + 2], "big") != SHIMMER3:
         return False
     period, switches = _head(head)
@@ -106,20 +100,7 @@ def card_recording(path: Path) -> str:
 
 
 def read_card(files: Sequence[Path]) -> ImportedSensor:
-    """Read all parts of one sensor's recording.
-
-    Parameters
-    ----------
-    files
-        Of one folder, in any order.
-
-    Raises
-    ------
-    FileRefusedError
-        No gyroscope or accelerometer was on, no calibration is stored, no sample, parts of several recordings.
-    OSError
-        A part cannot be read.
-    """
+    """Read one sensor's parts of a folder, in any order; raises FileRefusedError, or OSError if unreadable."""
     parts = sorted((_part(path) for path in files), key=lambda part: int(part.ticks[0]))
     name, first = card_recording(files[0]), parts[0]
     if any(part.period != first.period or part.is_synced != first.is_synced for part in parts):
@@ -141,13 +122,7 @@ def read_card(files: Sequence[Path]) -> ImportedSensor:
 
 
 def is_synchronised(path: Path) -> bool:
-    """Whether its clock was set right by radio while it recorded.
-
-    Raises
-    ------
-    OSError
-        It cannot be read.
-    """
+    """Give whether the clock was set by radio while it recorded; raises OSError where it cannot be read."""
     with path.open("rb") as file:
         return _is_synced(file.read(HEAD))
 

@@ -14,11 +14,9 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 
-import numpy as np
-
 from core.samples import ImuBlock, SensorInfo
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
-from devices.files.clock_repair import FileClock, repaired
+from devices.files.clock_repair import FileClock, repaired, usual_rate
 from devices.files.column_names import Quantity, unit_of
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import from_zero, with_own_clocks
@@ -73,15 +71,7 @@ def is_shimmer(path: Path, head: bytes) -> bool:
 
 
 def shimmer_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several; the rate is that of their stamps.
-
-    Raises
-    ------
-    FileRefusedError
-        Of the only file: no calibrated accelerometer, gyroscope and time of one sensor, another unit, no numbers.
-    OSError
-        It cannot be read.
-    """
+    """Read one trial's sensors from files, rate by stamps; raises FileRefusedError, or OSError if unreadable."""
     tables: list[Path] = []
     of_cards: dict[tuple[Path, str], list[Path]] = {}
     for path in files:
@@ -163,9 +153,8 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
         mag=table.matrix(mag)[is_new] if mag else None,
     )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, name, path.name, gyr_unit=units[columns.axes(GYR)[0]])
-    step_s = np.diff(block.time_s)
-    hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
-    info = SensorInfo(serial=name, model="Shimmer3", rate_hz=hz, clock=CLOCK if is_synced else "")
+    rate_hz, clock_name = usual_rate(block.time_s), CLOCK if is_synced else ""
+    info = SensorInfo(serial=name, model="Shimmer3", rate_hz=rate_hz, clock=clock_name)
     ids = (name.rpartition("_")[2],)
     return ImportedSensor(name, ids, str(path), block, info, clock.findings)
 

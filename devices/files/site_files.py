@@ -27,22 +27,7 @@ NUMERIC = frozenset((*REQUIRED, *QUAT, *MAG))
 def read_site(
     path: Path, where: str, place: str, sensor: str, is_rate_derived: bool
 ) -> tuple[ImuBlock, tuple[Finding, ...]]:
-    """One site's samples.
-
-    Samples that carry the same stamp as the one before are dropped, with a finding: the first was there in time.
-
-    Parameters
-    ----------
-    where
-        The file's name in refusals.
-    place
-        Recording and site, as findings name them.
-
-    Raises
-    ------
-    FileRefusedError
-        Whatever `tables` refuses, a required column missing, a clock that steps back, a sample without a time.
-    """
+    """Read one site's samples, dropping repeated stamps with a finding; raises FileRefusedError."""
     try:
         table = read_parquet(path, where, NUMERIC) if path.suffix == ".parquet" else read_csv(path, where, NUMERIC)
     except OSError as error:
@@ -76,13 +61,7 @@ def read_site(
 
 
 def write_site(block: ImuBlock, path: Path) -> None:
-    """Write a CSV file that `read_site` reads back to the same samples, bit for bit.
-
-    Raises
-    ------
-    ValueError
-        An unknown column has the name of one of the block's own.
-    """
+    """Write a CSV that `read_site` reads back bit for bit; ValueError for a column named as a block's own."""
     import pyarrow.csv  # here, not above: the window starts without it
 
     columns = {
@@ -170,13 +149,7 @@ class Shelf:
 
 
 def sensor_changes(worn: Sequence[tuple[str, Mapping[Site, str]]]) -> tuple[Finding, ...]:
-    """Where a recording's sensor is another than in the last recording that had one at this site.
-
-    Parameters
-    ----------
-    worn
-        Per recording its name and the sensors' names, in order of time.
-    """
+    """Find where a recording's sensor differs from that of the last one with a sensor at the site."""
     last: dict[Site, str] = {}
     findings = []
     for recording, sensors in worn:

@@ -36,8 +36,7 @@ OTHER = {
 
 
 def site_of_name(name: str) -> Site | None:
-    """The site that a name like "Left Upper Leg", "femur_l" or "rightFoot" gives; None where it gives none, or
-    two."""
+    """Give the site of a name such as "Left Upper Leg", "femur_l" or "rightFoot"; None for none or two."""
     words = _words(name)
     sides = {side for side, known in SIDES.items() if known & set(words)}
     segments = {segment for segment, known in SEGMENTS.items() if known & set(words)}
@@ -48,10 +47,7 @@ def site_of_name(name: str) -> Site | None:
 
 
 def without_site(name: str) -> str:
-    """A name without what shows where its sensor was worn: what the sensors of one trial have in common.
-
-    A number of the sensor at the end goes with it: eight hexadecimal digits, or twelve.
-    """
+    """Strip the site, and a sensor number of 8 or 12 hex digits at the end, from a name."""
     parts = re.split(r"[_\s-]+", name)
     if site_of_name(name) is not None:
         of_site = {word for group in (SIDES, SEGMENTS) for words in group.values() for word in words} | OF_LEGS

@@ -49,22 +49,7 @@ def sheet_states(path: Path, word: bytes, within: int = 65_536) -> bool:
 
 
 def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: str) -> tuple[list[list[str]], Table]:
-    """The rows before the header as texts, and the table beneath it, of the first sheet that has such a header.
-
-    Parameters
-    ----------
-    where
-        The file's name in messages.
-    numeric
-        Columns to be read as numbers, NaN where empty; others are left out.
-    header_names
-        The header is the first row with a cell that contains this.
-
-    Raises
-    ------
-    FileRefusedError
-        The library is missing, no Excel file, no such header, a column twice, a text that is not a number.
-    """
+    """Read the first sheet with the header: rows before it as texts, and the table; raises FileRefusedError."""
     if find_spec("openpyxl") is None:
         raise FileRefusedError(
             where,
@@ -72,7 +57,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
             "Install gaitwright[imports]",
             library="openpyxl",
         )
-    import openpyxl
+    import openpyxl  # an extra, and slow to import
 
     try:
         with path.open("rb") as file:

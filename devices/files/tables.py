@@ -50,22 +50,13 @@ class Table:
 class TextShape:
     """How a text of another program is laid out, beyond its header.
 
-    Attributes
-    ----------
-    names
-        Of the columns, in their order.
-    units
-        What a line of units below the header gives for each column; empty where there is no such line.
-    decimal
-        The decimal point: "," in files of some countries.
-    first
-        The cells of the first row of values; empty where there is none.
+    `units`: what a line of units below the header gives for each column; empty where there is no such line.
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # of the columns, in their order
     units: Mapping[str, str]
-    decimal: str
-    first: tuple[str, ...]
+    decimal: str  # the decimal point: "," in files of some countries
+    first: tuple[str, ...]  # the cells of the first row of values; empty where there is none
 
 
 def shape_of(path: Path, where: str, is_unit: Callable[[str], bool], *, comment: str, delimiters: str) -> TextShape:
@@ -92,31 +83,8 @@ def read_csv(
     decimal: str = ".",
     header_names: str = "",
 ) -> Table:
-    """Read a text with one header line.
-
-    Parameters
-    ----------
-    where
-        The file's name in messages.
-    numeric
-        Columns to be read as numbers, NaN where empty.
-    comment
-        Lines starting with it before the header are passed over.
-    delimiters
-        Of these, the one that divides the header most is taken.
-    keep_others
-        All other columns are kept as the text they are, or left out.
-    has_units
-        The line after the header holds units, see `shape_of`.
-    decimal
-        The decimal point.
-    header_names
-        The header is the first line that contains this; lines before it are passed over.
-
-    Raises
-    ------
-    FileRefusedError
-        Not a text, no header, a column twice, a line with too few or too many columns, a text that is not a number.
+    """Read a text with one header line; `numeric` columns are NaN where empty; raises FileRefusedError.
+    The delimiter is the one that divides the header most; the header is the first line with `header_names`.
     """
     with path.open("rb") as file:
         names, delimiter, header_line = _read_header(file, where, comment, delimiters, header_names)
@@ -127,7 +95,7 @@ def read_csv(
         is_open = _is_open(file, start)
         if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
             _refuse_line(path, where, start, header_line, names, numeric, delimiter, decimal)
-            if _has_content(path, start):
+            if next(_lines(path, start, 0), None) is not None:
                 raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
             arrow = None
 
@@ -148,13 +116,7 @@ def read_csv(
 
 
 def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
-    """Read a Parquet file as `read_csv` reads a text. Columns that are not asked for as numbers keep numeric types.
-
-    Raises
-    ------
-    FileRefusedError
-        Not Parquet, a column twice, a column that should hold numbers and does not.
-    """
+    """Read Parquet as `read_csv` reads a text; other columns keep numeric types; raises FileRefusedError."""
     import pyarrow.parquet  # here, not above: the window starts without it
 
     try:
@@ -187,13 +149,7 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
 def header_of(
     path: Path, where: str, *, comment: str | None = None, delimiters: str, header_names: str = ""
 ) -> tuple[list[str], list[str]]:
-    """The lines before the header, without the mark of a comment, and the names of the columns; as `read_csv`.
-
-    Raises
-    ------
-    FileRefusedError
-        Not a text, no header, a column twice.
-    """
+    """Give the lines before the header, less comment marks, and the columns' names; raises FileRefusedError."""
     with path.open("rb") as file:
         names, _, header_line = _read_header(file, where, comment, delimiters, header_names)
         file.seek(0)
@@ -268,7 +224,7 @@ def _read_body(
     file: BinaryIO, names: list[str], required: list[str], numeric: Collection[str], delimiter: str, decimal: str
 ) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
-    import pyarrow.csv
+    import pyarrow.csv  # as above
 
     types = {name: pyarrow.float64() if name in numeric else pyarrow.string() for name in names}
     try:
@@ -292,7 +248,7 @@ def _read_body(
 
 def _swallows_lines(arrow: Any, numeric: Collection[str]) -> bool:
     """A quotation mark that is never closed takes the lines after it into one cell."""
-    import pyarrow.compute as pc
+    import pyarrow.compute as pc  # as above
 
     texts = [column for name, column in zip(arrow.column_names, arrow.columns, strict=True) if name not in numeric]
     return any(pc.any(pc.match_substring(column, "\n")).as_py() for column in texts)
@@ -313,10 +269,6 @@ def _lines(path: Path, start: int, header_line: int) -> Iterator[tuple[int, byte
         for number, raw in enumerate(file, header_line + 1):
             if line := raw.rstrip(b"\r\n"):
                 yield number, line
-
-
-def _has_content(path: Path, start: int) -> bool:
-    return next(_lines(path, start, 0), None) is not None
 
 
 def _refuse_line(

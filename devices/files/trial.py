@@ -12,6 +12,7 @@ from devices.files.refusal import FileRefusedError
 T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
+BESIDE_INERTIAL = "Quaternion.csv"  # of the x-IMU3's converter, with the orientation
 SIMULATED_MARK = "SIMULATED.txt"  # beside tables that belong to no session folder, which would say it
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
@@ -108,26 +109,10 @@ class Gathered:
     refused: tuple[FileRefusedError, ...]
 
 
-def no_ids(_path: Path) -> Sequence[str]:
-    """No id: only what is in a file shows whose it is."""
-    return ()
-
-
 def read_each(
-    files: Sequence[Path], read: Callable[[Path], T], ids: Callable[[Path], Sequence[str]] = no_ids
+    files: Sequence[Path], read: Callable[[Path], T], ids: Callable[[Path], Sequence[str]] = lambda _path: ()
 ) -> tuple[list[T], list[UnreadFile]]:
-    """What was read of each file, and the files that were refused.
-
-    Parameters
-    ----------
-    ids
-        By which the sensor of a file may be called that cannot be read.
-
-    Raises
-    ------
-    FileRefusedError
-        The first refusal, where no file could be read.
-    """
+    """Give what was read of each file, and the refused ones; raises FileRefusedError where all are refused."""
     found: list[T] = []
     unread: list[UnreadFile] = []
     for path in files:

@@ -55,20 +55,9 @@ def is_xdf(_path: Path, head: bytes) -> bool:
 
 
 def xdf_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second, which the stamps are held to.
-
-    Raises
-    ------
-    FileRefusedError
-        What `xdf_streams` and `named_columns` refuse of the only file, and one without a stream of a sensor.
-    """
+    """Read one trial's sensors, stamps held to the rate; raises FileRefusedError if the only file is refused."""
     started: list[str] = []
-    trial = trial_of_tables("xdf", files, lambda path: _tables(path, started), rate_hz)
+    trial = trial_of_tables("xdf", lambda path: _tables(path, started), files, rate_hz)
     sensors = tuple(_on_own_clocks(trial.sensors))
     return replace(trial, sensors=sensors, started=min(filter(None, started), default=""))
 
@@ -206,15 +195,7 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
 
 
 def lasting_step_back(stamp_s: FloatArray, rate_hz: float) -> int | None:
-    """Find the first sample from which on stamps of packets are earlier than those before imply, and stay so.
-
-    Parameters
-    ----------
-    stamp_s : (n,)
-        Finite.
-    rate_hz
-        As the sender gives it.
-    """
+    """Find the first sample from which packets' stamps are lastingly earlier than those before imply."""
     window, least_s = max(round(LATE_S * rate_hz), 4), max(1.5 / rate_hz, LEAST_LOSS_S)
     back = np.flatnonzero(np.diff(stamp_s) < -least_s) + 1
     if not len(back):
@@ -232,22 +213,8 @@ def _usual_step_s(stamp_s: FloatArray, window: int) -> float:
 
 
 def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
-    """Times on a straight line through stamps that came with packets, with gaps where samples were lost.
-
-    A packet that comes late is followed by others in time; after a loss all are late. So a loss is where the least
-    delay of the samples after it is above that of those before.
-
-    Parameters
-    ----------
-    stamp_s : (n,)
-        Finite, else they are left as they are.
-    rate_hz
-        As the sender gives it.
-
-    Returns
-    -------
-    StraightTimes or None
-        None: the stamps are even as they are, or too few to decide.
+    """Fit a line through late stamps, gaps where samples were lost; None: even already, or too few.
+    A loss is where the least delay of the samples after it is above that of those before.
     """
     window = max(round(LATE_S * rate_hz), 4)
     if len(stamp_s) <= 2 * window or not np.isfinite(stamp_s).all():

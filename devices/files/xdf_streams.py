@@ -44,19 +44,7 @@ DAMAGES = (
 class XdfStream:
     """One stream of numbers.
 
-    Attributes
-    ----------
-    labels, units
-        Of its channels; empty where they are not given.
-    rate_hz
-        As the sender gives it; None: it gives none.
-    samples : (n, channels)
-    stamp_s : (n,)
-        On the recording computer's clock where `has_clock`, else on the sender's.
-    has_clock
-        The distance of the two clocks was measured.
-    is_whole
-        It ends as LabRecorder ends streams, with all samples that it counted.
+    `labels`, `units`: of its channels; empty where they are not given.
     """
 
     name: str
@@ -64,11 +52,11 @@ class XdfStream:
     host: str
     labels: Sequence[str]
     units: Sequence[str]
-    rate_hz: float | None
-    samples: FloatArray
-    stamp_s: FloatArray
-    has_clock: bool
-    is_whole: bool
+    rate_hz: float | None  # as the sender gives it; None: it gives none
+    samples: FloatArray  # (n, channels)
+    stamp_s: FloatArray  # (n,): on the recording computer's clock where `has_clock`, else on the sender's
+    has_clock: bool  # the distance of the two clocks was measured
+    is_whole: bool  # it ends as LabRecorder ends streams, with all samples that it counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,13 +69,7 @@ class XdfRecording:
 
 
 def read_xdf(path: Path) -> XdfRecording:
-    """All streams of numbers of one file.
-
-    Raises
-    ------
-    FileRefusedError
-        The library is not installed, or the file is damaged.
-    """
+    """Read a file's streams of numbers; raises FileRefusedError without library or for a damaged file."""
     if find_spec(LIBRARY) is None:
         raise FileRefusedError(
             path.name, "reading the file needs {library}, which is not installed", INSTALL_IT, library=LIBRARY

@@ -15,15 +15,15 @@ from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, SensorInfo
 from devices.clocks.clock import BACK_S
 from devices.drivers.ximu3 import DRIVER, MODEL, G, Ximu3Framer, received_in
-from devices.files.clock_repair import FileClock, repaired
+from devices.files.clock_repair import FileClock, repaired, usual_rate, whole_clock
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import read_csv
-from devices.files.trial import ImportedSensor, ImportedTrial, read_each
+from devices.files.trial import BESIDE_INERTIAL, ImportedSensor, ImportedTrial, read_each
 from devices.stream import decoded
 
-INERTIAL, QUATERNION = "Inertial.csv", "Quaternion.csv"
+INERTIAL = "Inertial.csv"
 TIME = "Timestamp (us)"
 GYR = tuple(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")
 ACC = tuple(f"Accelerometer {axis} (g)" for axis in "XYZ")
@@ -47,15 +47,7 @@ def is_ximu3(path: Path, head: bytes) -> bool:
 
 
 def ximu3_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, a file or a folder for each; the rate is that of their stamps.
-
-    Raises
-    ------
-    FileRefusedError
-        The only one holds no samples, or columns that are missing or no numbers.
-    OSError
-        It cannot be read.
-    """
+    """Read one trial's sensors, a file or folder each, rate by stamps; raises FileRefusedError or OSError."""
     sensors, unread = read_each(files, _sensor)
     return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 
@@ -75,9 +67,7 @@ def _sensor(path: Path) -> ImportedSensor:
             "Set the sensor to send inertial messages, and record again",
         )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, block.sensor, path.name, gyr_unit="deg/s", is_export=is_table)
-    step_s = np.diff(block.time_s)
-    hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
-    info = SensorInfo(serial=block.sensor, model=MODEL, rate_hz=hz)
+    info = SensorInfo(serial=block.sensor, model=MODEL, rate_hz=usual_rate(block.time_s))
     return ImportedSensor(block.sensor, (path.stem,), str(path), block, info, tuple(findings))
 
 
@@ -103,11 +93,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
     missing = [name for name in (TIME, *GYR, *ACC) if name not in table.numbers]
     if missing:
         raise FileRefusedError(where, "column {name} is missing", CONVERT_AGAIN, name=missing[0])
-    is_there = np.isfinite(table.numbers[TIME])
-    if not is_there.all():
-        row = int(np.argmin(is_there))
-        raise FileRefusedError(f"{where}, {table.place(row)}", "a sample has no time", CONVERT_AGAIN)
-    clock = repaired(table.numbers[TIME], FileClock(where, table.place, TIME, 1.0 / US_PER_S))
+    clock = whole_clock(table.numbers[TIME], FileClock(where, table.place, TIME, 1.0 / US_PER_S), CONVERT_AGAIN)
     time_s, is_new = clock.stamps / US_PER_S, clock.is_new
     name = path.parent.name if path.name == INERTIAL else path.stem
     block = ImuBlock(
@@ -115,7 +101,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
         time_s=time_s[is_new],
         gyr_rad_s=np.radians(table.matrix(GYR)[is_new]),
         acc_m_s2=table.matrix(ACC)[is_new] * G,
-        q_earth_from_sensor=_orientation(path.with_name(QUATERNION), time_s[is_new]),
+        q_earth_from_sensor=_orientation(path.with_name(BESIDE_INERTIAL), time_s[is_new]),
     )
     return block, list(clock.findings)
 

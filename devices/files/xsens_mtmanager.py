@@ -6,7 +6,7 @@ means over the interval before their stamp, as the orientation in the same file 
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,10 +14,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.clock_repair import FileClock, repaired, unwrapped, without_turns
 from devices.files.magnitudes import middle_size, times_the_turning
-from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
+from devices.files.orientation_rates import Numbers, derive_rates, quaternions, rate_kind_by
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import Table, header_of, read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
@@ -62,21 +62,12 @@ class MtFile:
 
 
 def is_mtmanager(_path: Path, head: bytes) -> bool:
-    """Whether a file that begins so is one of these texts, with the comments MT Manager heads them with.
-
-    Columns alone are not enough: those of Movella DOT have the same names, and other ticks of time.
-    """
+    """Give whether a file begins with MT Manager's comments; its columns are named as Movella DOT's."""
     return head.lstrip(b"\xef\xbb\xbf").startswith(b"//") and COUNTER.encode() in head
 
 
 def read_mtmanager(path: Path) -> MtFile:
-    """Read one file.
-
-    Raises
-    ------
-    FileRefusedError
-        Not an MT Manager text, no acceleration, neither rates nor orientation, a counter that steps back, other units.
-    """
+    """Read one file; raises FileRefusedError without acceleration, rates or orientation, or other units."""
     where = path.name
     comments, names = header_of(path, where, comment="//", delimiters=DELIMITERS)
     if COUNTER not in names:
@@ -117,21 +108,7 @@ def read_mtmanager(path: Path) -> MtFile:
 
 
 def mtmanager_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The files of one trial, one sensor in each, aligned by their packet counters.
-
-    Time is the counter divided by the update rate, from the first packet that any of the files holds; packets that are
-    missing are gaps. Rates that a file lacks are derived from its orientation, see `derive_rates`.
-
-    Parameters
-    ----------
-    rate_hz
-        Update rate where the files do not give it.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_mtmanager` refuses of the only file, an update rate that is unknown or not the same everywhere.
-    """
+    """Read a trial aligned by packet counter over update rate, with gaps; raises FileRefusedError."""
     read, unread = read_each(files, read_mtmanager, sensor_ids)
     rate_hz = _common_rate(read, rate_hz)
     sensors = []
@@ -167,11 +144,11 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         small = matrix[is_small]
         error[is_small] = np.abs(small @ small.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
         error[is_small] += np.linalg.det(small) < 0
-        q = _quaternions(Rotation.from_matrix, matrix, error < ROTATION_ERROR)
+        q = quaternions(Rotation.from_matrix, matrix, error < ROTATION_ERROR)
     elif names >= set(EULER):
         angles = table.matrix(EULER)
         error = np.zeros(len(angles))
-        q = _quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), angles, np.isfinite(angles.sum(axis=1)))
+        q = quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), angles, np.isfinite(angles.sum(axis=1)))
     else:
         return None
     wrong = np.flatnonzero(error > ROTATION_ERROR)
@@ -179,13 +156,6 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         raise FileRefusedError(
             f"{where}, {table.place(int(wrong[0]))}", "the orientation is not a valid rotation", EXPORT_AGAIN
         )
-    return q
-
-
-def _quaternions(make: Callable[[FloatArray], Rotation], values: FloatArray, is_there: BoolArray) -> FloatArray:
-    q = np.full((len(values), 4), np.nan)
-    if is_there.any():
-        q[is_there] = make(values[is_there]).as_quat(scalar_first=True)
     return q
 
 

@@ -9,8 +9,8 @@ from core.body import Side
 from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S, setting_of
-from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource, labelled
-from devices.simulation.walker import PEOPLE, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource, moved
+from devices.simulation.walker import PEOPLE, Standing, Walk, WalkerSettings
 
 
 class ProsthesisUser(ReplaySource):
@@ -36,7 +36,7 @@ class ProsthesisUser(ReplaySource):
     ) -> None:
         self._settings = replace(settings, prosthetic_side=side, variation=PEOPLE)
         still = [one for one in settings.recordings if not isinstance(one, Walk)]
-        first = labelled(simulate(replace(self._settings, recordings=tuple(still))).session)
+        first = moved(replace(self._settings, recordings=tuple(still)))
         super().__init__(first, finishes=True, speed=speed, now_ns=now_ns)
         self._asking = threading.Lock()  # of all below
         self._walks: list[Walk] = []
@@ -71,7 +71,7 @@ class ProsthesisUser(ReplaySource):
             )
             walks = tuple(self._walks)  # all of them: sensors ride on the tissue as they did in the first
         settings = replace(self._settings, recordings=(Standing(duration_s=1.0), *walks))
-        walk = labelled(simulate(settings).session).recordings[-1]
+        walk = moved(settings).recordings[-1]
         with self._asking:
             if asked == self._times_asked:  # else something else was asked meanwhile
                 self.play_next(walk)

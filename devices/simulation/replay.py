@@ -59,17 +59,11 @@ DEMONSTRATION_NAMES = {
 class ReplayFaults:
     """What goes wrong on the way, by sensor.
 
-    Attributes
-    ----------
-    loss_share
-        Of all samples, each by chance.
-    lag_s
-        By how much later a sensor's samples come and are stamped than they were taken.
-    silent_s
-        From when to when a sensor sends nothing, since the source was first opened.
+    `lag_s`: by how much later a sensor's samples come and are stamped than they were taken.
+    `silent_s`: from when to when a sensor sends nothing, since the source was first opened.
     """
 
-    loss_share: float = 0.0
+    loss_share: float = 0.0  # of all samples, each by chance
     lag_s: Mapping[str, float] = field(default_factory=dict)
     silent_s: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     seed: int = 0
@@ -122,7 +116,7 @@ class ReplaySource:
         now_ns: Callable[[], int] = host_time_ns,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        if not session.recordings or not all(_has_samples(recording) for recording in session.recordings):
+        if not session.recordings or not all(any(map(len, recording.imu.values())) for recording in session.recordings):
             raise ValueError("a recording without samples cannot be played")
         self.now_ns = now_ns if speed == 1.0 else _faster(now_ns, speed)
         self._sleep, self._faults, self._finishes = sleep, faults, finishes
@@ -136,7 +130,7 @@ class ReplaySource:
             for site, name in self._names.items()
         }
         self._steps_s = {name: 1.0 / details.rate_hz for name, details in self._details.items() if details.rate_hz}
-        self._info = SourceInfo(DRIVER, VERSION, name, tuple(self._names.values()), is_simulated=True)
+        self.info = SourceInfo(DRIVER, VERSION, name, tuple(self._names.values()), is_simulated=True)
         self._chance = {name: np.random.default_rng([faults.seed, k]) for k, name in enumerate(self._details)}
         self._lock = threading.Lock()  # of all below, which is changed from any thread
         self._clips: list[_Clip] = []
@@ -145,10 +139,6 @@ class ReplaySource:
         self.is_open = self._is_away = False
         self._silenced: frozenset[str] = frozenset()
         self._shaken_s: dict[str, float] = {}
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     def open(self) -> None:
         with self._lock:
@@ -300,7 +290,12 @@ class ReplaySource:
 
 def demonstration(settings: WalkerSettings = DEMONSTRATION_SESSION) -> ReplaySource:
     """The patient that the application shows. Takes a second or two."""
-    return ReplaySource(labelled(simulate(settings).session), finishes=True)
+    return ReplaySource(moved(settings), finishes=True)
+
+
+def moved(settings: WalkerSettings) -> Session:
+    """What the demonstration's sensors send of a walker."""
+    return labelled(simulate(settings).session)
 
 
 def labelled(session: Session) -> Session:
@@ -323,10 +318,6 @@ def names_of(session: Session) -> dict[Site, str]:
 def _renamed(imu: Mapping[Site, ImuBlock]) -> dict[Site, ImuBlock]:
     by_name = sorted(imu, key=lambda site: DEMONSTRATION_NAMES[site])
     return {site: replace(imu[site], sensor=DEMONSTRATION_NAMES[site]) for site in by_name}
-
-
-def _has_samples(recording: Recording) -> bool:
-    return any(len(block) for block in recording.imu.values())
 
 
 def _longest(session: Session, site: Site) -> ImuBlock:

@@ -46,7 +46,6 @@ from devices.simulation.walker_pelvis import (
     lunge,
     pelvis_poses,
     thigh_on_tissue,
-    turned_pelvis,
     with_pelvis,
 )
 from devices.simulation.walker_plan import plan_standing, plan_walk
@@ -324,8 +323,8 @@ def _move(
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     if Site.PELVIS in settings.sites and pelvis is None:
         pelvis, motions = with_pelvis(motions, _rng(settings, 9, number))
-    turned = None if pelvis is None else turned_pelvis(pelvis, compass)
-    return {side: _turned(motion, compass) for side, motion in motions.items()}, turned, duration_s
+    turned = None if pelvis is None else pelvis.turned(compass)
+    return {side: motion.turned(compass) for side, motion in motions.items()}, turned, duration_s
 
 
 def _stand_or_walk(
@@ -358,13 +357,3 @@ def _fine_clock(settings: WalkerSettings, duration_s: float) -> FloatArray:
     fine_hz = settings.rate_hz * np.ceil(FINE_HZ / settings.rate_hz)
     margin = int(np.ceil(MARGIN_S * fine_hz))
     return np.arange(-margin, int(np.ceil(duration_s * fine_hz)) + margin + 1) / fine_hz
-
-
-def _turned(motion: LegMotion, rotation: FloatArray) -> LegMotion:
-    """The same motion in another compass direction; `rotation` (3, 3) about the vertical."""
-    return replace(
-        motion,
-        rotations=rotation @ motion.rotations,
-        origins_m=motion.origins_m @ rotation.T,
-        footholds_m=motion.footholds_m @ rotation[:2, :2].T,
-    )

@@ -64,21 +64,13 @@ class Manner(StrEnum):
 class GaitChange:
     """A change of gait, or standard deviations of one.
 
-    Attributes
-    ----------
-    knee_deg
-        Added to the knee's peak in swing, and so to its range.
-    ankle_deg
-        Added to the range, by more plantarflexion at toe-off. Beyond -3 deg the range has other ends.
-    stance_percent
-        Points of the stride.
-    time, length
-        Of a stride, as shares: 0.02 is 2 % more.
+    `ankle_deg`: added to the range, by more plantarflexion at toe-off. Beyond -3 deg the range has other ends.
+    `time`, `length`: of a stride, as shares: 0.02 is 2 % more.
     """
 
-    knee_deg: float = 0.0
+    knee_deg: float = 0.0  # added to the knee's peak in swing, and so to its range
     ankle_deg: float = 0.0
-    stance_percent: float = 0.0
+    stance_percent: float = 0.0  # points of the stride
     time: float = 0.0
     length: float = 0.0
 
@@ -135,18 +127,10 @@ class FreeMotion:
 
 @dataclass(frozen=True, slots=True)
 class Treadmill:
-    """The belt that a walk is on.
+    """The belt that a walk is on."""
 
-    Attributes
-    ----------
-    ripple
-        By what share of its speed each landing slows the belt, which then makes up for it.
-    slope
-        Rise over run.
-    """
-
-    ripple: float = 0.0
-    slope: float = 0.0
+    ripple: float = 0.0  # by what share of its speed each landing slows the belt, which then makes up for it
+    slope: float = 0.0  # rise over run
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,34 +228,20 @@ class CourseKind(StrEnum):
 class TimedCourse:
     """Everything one simulated course depends on. Within a session sensors and tissue are the session's.
 
-    Attributes
-    ----------
-    lap_m
-        Of the courses to and fro, from turn to turn.
-    pauses
-        How often the patient stops on the way, in courses to and fro.
-    hesitates
-        Before a turn the patient waits for a moment and takes shorter steps.
-    slowing
-        By what share the speed falls from the first to the last step.
-    rise_s
-        How long rising from the chair takes.
-    silent_s
-        From when to when a site's sensor sends nothing; not within a session.
-    manner_of_side
-        Sides that walk in another manner than the ordinary one.
-    change, changed_side
-        What is added to joints and stance, in both legs or in one; time and length stay the course's.
+    `silent_s`: from when to when a site's sensor sends nothing; not within a session.
+    `manner_of_side`: sides that walk in another manner than the ordinary one.
+    `change`, `changed_side`: what is added to joints and stance, in both legs or in one; time and length stay the
+    course's.
     """
 
     kind: CourseKind
     seed: int = 0
     speed_m_s: float = 1.1
-    lap_m: float = 15.0
-    pauses: int = 0
-    hesitates: bool = False
-    slowing: float = 0.0
-    rise_s: float = 1.2
+    lap_m: float = 15.0  # of the courses to and fro, from turn to turn
+    pauses: int = 0  # how often the patient stops on the way, in courses to and fro
+    hesitates: bool = False  # before a turn the patient waits for a moment and takes shorter steps
+    slowing: float = 0.0  # by what share the speed falls from the first to the last step
+    rise_s: float = 1.2  # how long rising from the chair takes
     silent_s: Mapping[Site, tuple[float, float]] = field(default_factory=dict)
     sites: tuple[Site, ...] = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.LEFT_FOOT, Site.RIGHT_FOOT)
     tissue: Tissue = Tissue.RIGID

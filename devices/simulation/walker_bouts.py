@@ -79,22 +79,7 @@ def plan_bout(
     rng: np.random.Generator,
     change_of_side: Mapping[Side, GaitChange] = NEITHER,
 ) -> WalkPlan:
-    """When and where the feet stand in one bout, on a clock that starts with it.
-
-    Parameters
-    ----------
-    gaits
-        The usual ones of both legs, which decide the shape of a stride.
-    step_s
-        Of the fine clock.
-    change_of_side
-        What each leg has added to its joints and stance in every stride.
-
-    Returns
-    -------
-    WalkPlan
-        Its path is on a clock from 0 to its duration, in steps of `step_s`.
-    """
+    """Plan where and when the feet stand in one bout, on a clock from 0 in steps of `step_s`."""
     gait = gaits[first]
     shares = np.tile([1.0 + 2.0 * gait.late, 1.0 + 2.0 * gaits[first.other].late], len(bout.steps))[: len(bout.steps)]
     durations = np.array([step.time_s for step in bout.steps]) * shares
@@ -145,20 +130,7 @@ def walk_bouts(
     sway_m: FloatArray,
     per_leg: Mapping[Side, np.random.Generator],
 ) -> dict[Side, LegMotion]:
-    """Both legs through all bouts, each beginning where and as the one before it ended.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording; bouts start on it.
-    sway_m : (n, 2)
-        Of the body, forward and left.
-
-    Returns
-    -------
-    dict of Side to LegMotion
-        Earth axes, z up, metres.
-    """
+    """Move both legs through all bouts, each where the last ended; earth axes, z up, metres."""
     step_s = float(time_s[1] - time_s[0])
     edges = [0, *(round((bout.start_s - time_s[0]) / step_s) for bout in bouts[1:]), len(time_s)]
     parts: dict[Side, list[LegMotion]] = {side: [] for side in Side}
@@ -180,20 +152,7 @@ def walk_bouts(
 
 
 def climb(motion: LegMotion, heights_m: FloatArray) -> LegMotion:
-    """The same motion on stairs: each swing leads the foot to the height of its next foothold.
-
-    The leg goes up as it is, with the angles of level walking: only the path of the foot is modelled.
-
-    Parameters
-    ----------
-    heights_m : (k + 1,)
-        Of the foothold before the first of k swings, and of those after each.
-
-    Returns
-    -------
-    LegMotion
-        Earth axes, z up, metres.
-    """
+    """Lead each swing to the height of its next of k + 1 footholds; only the path of the foot is modelled."""
     events, height = motion.events, np.full_like(motion.time_s, heights_m[0])
     pairs = zip(events.toe_off_s.tolist(), events.initial_contact_s.tolist(), strict=True)
     for number, (off_s, on_s) in enumerate(pairs):
@@ -241,20 +200,7 @@ def _joined(parts: Sequence[LegMotion], time_s: FloatArray) -> LegMotion:
 
 
 def sit(leg: Leg, motion: LegMotion, changes: Sequence[SeatChange], phase_rad: float) -> LegMotion:
-    """The same motion, of a patient who sits where `changes` say so: the feet stay where they stand.
-
-    Parameters
-    ----------
-    changes
-        Ascending, sitting and rising by turns; before a rise that comes first the patient sits.
-    phase_rad
-        Of the thighs' fidgeting on the seat.
-
-    Returns
-    -------
-    LegMotion
-        With the thighs level where the patient sits.
-    """
+    """Seat the patient where `changes` state so, feet in place; before a first rise the patient sits."""
     if not changes:
         return motion
     t = motion.time_s

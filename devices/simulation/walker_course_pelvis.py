@@ -22,13 +22,7 @@ HEADING_S = 0.3
 def course_pelvis(
     motions: Mapping[Side, LegMotion], changes: Sequence[SeatChange]
 ) -> tuple[PelvisMotion, dict[Side, LegMotion]]:
-    """The pelvis between two legs that walk, turn, sit and rise, and the legs as they hang from it.
-
-    Returns
-    -------
-    PelvisMotion, dict of Side to LegMotion
-        On the legs' fine clock, earth axes, z up.
-    """
+    """Give the pelvis between two legs and the legs as they hang from it; earth axes, z up."""
     time_s = motions[Side.LEFT].time_s
     step_s = float(time_s[1] - time_s[0])
     # the thighs' y points to the left also where they lie on the seat

@@ -44,30 +44,19 @@ class CourseTurn:
 class CourseTruth:
     """What is true of a course, on the true clock.
 
-    Attributes
-    ----------
-    time_s, way_m : (n,)
-        How far the body has come along its way, turns included.
-    contacts_s : (k,)
-        Of both feet, ascending.
-    pauses_s
-        From the last contact before to the first toe-off after.
-    left_seat_s, upright_s : (r,)
-        Of each rise: the thighs have left the seat; they are as in standing.
-    seated_s : (d,)
-        Of each sitting down: the thighs rest on the seat.
-    climbs_m : (k,)
-        Of each foot: how much higher each of its contacts is than the one before.
+    `time_s`, `way_m`: (n,): how far the body has come along its way, turns included.
+    `left_seat_s`, `upright_s`: (r,): of each rise: the thighs have left the seat; they are as in standing.
+    `climbs_m`: (k,): of each foot: how much higher each of its contacts is than the one before.
     """
 
     time_s: FloatArray
     way_m: FloatArray
-    contacts_s: FloatArray
+    contacts_s: FloatArray  # (k,): of both feet, ascending
     turns: tuple[CourseTurn, ...]
-    pauses_s: tuple[tuple[float, float], ...]
+    pauses_s: tuple[tuple[float, float], ...]  # from the last contact before to the first toe-off after
     left_seat_s: FloatArray
     upright_s: FloatArray
-    seated_s: FloatArray
+    seated_s: FloatArray  # (d,): of each sitting down: the thighs rest on the seat
     climbs_m: Mapping[Side, FloatArray] = field(default_factory=dict)
 
     def passes_s(self, at_m: float) -> float:
@@ -180,13 +169,7 @@ def _fine_clock(duration_s: float) -> FloatArray:
 def walk_course(
     course: TimedCourse, legs: Mapping[Side, Leg]
 ) -> tuple[dict[Side, LegMotion], list[SeatChange], CourseTruth, float]:
-    """Both legs' poses on the fine clock, when they sit and rise, what is true of them, and how long it lasts.
-
-    Returns
-    -------
-    dict of Side to LegMotion, list of SeatChange, CourseTruth and float
-        Earth axes, z up, metres; seconds from the start of the recording.
-    """
+    """Give both legs' poses, seat changes, truth and duration in s from the start; earth axes, z up, m."""
     rng = _rng(course, 8)
     start_s = round(rng.uniform(1.6, 3.0) * FINE_HZ) / FINE_HZ
     changes: list[SeatChange] = []
@@ -225,7 +208,7 @@ def walk_course(
     phase_rad = rng.uniform(0.0, 2.0 * np.pi)
     motions = {side: sit(legs[side], motion, changes, phase_rad) for side, motion in motions.items()}
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
-    motions = {side: _turned(motion, compass) for side, motion in motions.items()}
+    motions = {side: motion.turned(compass) for side, motion in motions.items()}
     return motions, changes, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
 
 
@@ -236,15 +219,6 @@ def _climbed(motions: Mapping[Side, LegMotion], bout: Bout) -> tuple[dict[Side, 
     heights = {side: np.concatenate([[0.0], height_m[0 if side is first else 1 :: 2]]) for side in motions}
     climbed = {side: climb(motion, heights[side]) for side, motion in motions.items()}
     return climbed, {side: np.diff(values) for side, values in heights.items()}
-
-
-def _turned(motion: LegMotion, compass: FloatArray) -> LegMotion:
-    return replace(
-        motion,
-        rotations=compass @ motion.rotations,
-        origins_m=motion.origins_m @ compass.T,
-        footholds_m=motion.footholds_m @ compass[:2, :2].T,
-    )
 
 
 def _more_rises(course: TimedCourse, at_s: float, rng: np.random.Generator) -> list[SeatChange]:

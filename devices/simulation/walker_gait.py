@@ -59,20 +59,7 @@ ROTATION_DEG = ((0.0, -1.0), (0.3, 3.0), (0.8, -2.0), (1.0, -3.0), (1.5, 1.0))
 
 
 def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator) -> LegMotion:
-    """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-    sway_m : (n, 2)
-        Of the body, forward and left.
-
-    Returns
-    -------
-    LegMotion
-        Earth axes, z up, metres.
-    """
+    """Give one leg's poses on the fine clock, earth z up, m; `sway_m` (n, 2) is forward and left."""
     plan = _as_set(leg, plan, time_s)
     steps, gait = plan.steps[leg.side], plan.gaits[leg.side]
     step_s = time_s[1] - time_s[0]

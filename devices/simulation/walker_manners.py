@@ -64,13 +64,7 @@ def gaits_of(
 
 
 def gait_at(speed_m_s: float, manner: Manner = Manner.ORDINARY) -> Gait:
-    """Plausible strides at 0.3 to 2 m/s, 1.28 m at 1.19 m/s; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640).
-
-    Returns
-    -------
-    Gait
-        Times in seconds, lengths in metres, shares of a stride.
-    """
+    """Give strides at 0.3-2 m/s, 1.28 m at 1.19; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640)."""
     ordinary = _ordinary_gait(speed_m_s)
     if manner is Manner.SHUFFLING:
         return replace(

@@ -1,6 +1,6 @@
 """Poses of the segments of one leg at every instant, from joint angles."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -50,22 +50,18 @@ class LegMotion:
     events: TrueFootEvents
     footholds_m: FloatArray
 
+    def turned(self, rotation: FloatArray) -> "LegMotion":
+        """The same motion in another compass direction; `rotation` (3, 3) about the vertical."""
+        return replace(
+            self,
+            rotations=rotation @ self.rotations,
+            origins_m=self.origins_m @ rotation.T,
+            footholds_m=self.footholds_m @ rotation[:2, :2].T,
+        )
+
 
 def rotation_about(axis: FloatArray, angle_rad: FloatArray) -> FloatArray:
-    """Rotation matrices (n, 3, 3) about one unit axis by angles (n,).
-
-    Parameters
-    ----------
-    axis : (3,)
-        Unit vector.
-    angle_rad : (n,)
-        Right-handed.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Rotation matrices.
-    """
+    """Give rotation matrices (n, 3, 3) about a unit axis (3,) by right-handed angles (n,)."""
     x, y, z = axis
     k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     s, c = np.sin(angle_rad)[:, None, None], np.cos(angle_rad)[:, None, None]
@@ -73,13 +69,7 @@ def rotation_about(axis: FloatArray, angle_rad: FloatArray) -> FloatArray:
 
 
 def knee_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
-    """Thigh from shank, (n, 3, 3).
-
-    Returns
-    -------
-    (n, 3, 3)
-        Takes vectors in the shank's axes to the thigh's.
-    """
+    """Give the rotations (n, 3, 3) from the shank's axes to the thigh's."""
     flexion = rotation_about(leg.knee_axis, angles.knee)
     if leg.knee_rotation_per_flexion == 0.0:
         return flexion
@@ -87,13 +77,7 @@ def knee_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
 
 
 def ankle_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
-    """Shank from foot, (n, 3, 3).
-
-    Returns
-    -------
-    (n, 3, 3)
-        Takes vectors in the foot's axes to the shank's.
-    """
+    """Give the rotations (n, 3, 3) from the foot's axes to the shank's."""
     dorsiflexion = rotation_about(leg.ankle_axis, angles.ankle)
     if leg.is_prosthetic:
         return dorsiflexion
@@ -111,20 +95,7 @@ def _normal_to(axis: FloatArray, direction: FloatArray) -> FloatArray:
 
 
 def hang_from_hip(leg: Leg, thigh: FloatArray, hip_m: FloatArray, angles: JointAngles) -> tuple[FloatArray, FloatArray]:
-    """Rotations (3, n, 3, 3) and origins (3, n, 3) of thigh, shank and foot below a hip (n, 3).
-
-    Parameters
-    ----------
-    thigh : (n, 3, 3)
-        Earth from thigh.
-    hip_m : (n, 3)
-        Earth axes, z up.
-
-    Returns
-    -------
-    (3, n, 3, 3) and (3, n, 3)
-        Earth from segment, and places in m, of thigh, shank and foot.
-    """
+    """Give rotations (3, n, 3, 3), earth from segment, and origins (3, n, 3) of the leg below a hip."""
     shank = thigh @ knee_rotation(leg, angles)
     foot = shank @ ankle_rotation(leg, angles)
     knee_m = hip_m - leg.thigh_m * thigh[:, :, 2]
@@ -133,72 +104,35 @@ def hang_from_hip(leg: Leg, thigh: FloatArray, hip_m: FloatArray, angles: JointA
 
 
 def smooth(signal: FloatArray, step_s: float, width_s: float) -> FloatArray:
-    """Two running means of `width_s`, which reach no further than `width_s` to either side.
-
-    Parameters
-    ----------
-    signal : (n, ...)
-        In any unit, every `step_s`.
-
-    Returns
-    -------
-    (n, ...)
-        In that unit.
-    """
+    """Average twice over `width_s` in running means, which together reach no further than `width_s`."""
     width = 2 * round(0.5 * width_s / step_s) + 1
     return np.asarray(uniform_filter1d(uniform_filter1d(signal, width, mode="nearest"), width, mode="nearest"))
 
 
 def smooth_step(x: FloatArray) -> FloatArray:
-    """0 below 0, 1 above 1, with two steady derivatives.
-
-    Parameters
-    ----------
-    x : (n,)
-        Time over the duration of the step.
-
-    Returns
-    -------
-    (n,)
-        0 to 1.
-    """
+    """Give 0 below 0, 1 above 1, and between them a step with two continuous derivatives."""
     u = np.clip(x, 0.0, 1.0)
     return u**3 * (10.0 - 15.0 * u + 6.0 * u**2)
 
 
 def sway_of(time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Quiet standing: the body sways by a few millimetres at 0.1 to 0.6 Hz.
+    """Give the quiet-standing sway (n, 2), forward and left, m: a few millimetres at 0.1 to 0.6 Hz."""
+    return noise_in_band(time_s, (0.1, 0.6), (2, 4), rng) * 0.0015
 
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock.
 
-    Returns
-    -------
-    (n, 2)
-        Forward and left, m.
-    """
-    frequency, phase = rng.uniform(0.1, 0.6, (2, 4)), rng.uniform(0.0, 2.0 * np.pi, (2, 4))
+def noise_in_band(
+    time_s: FloatArray, band_hz: tuple[float, float], shape: tuple[int, int], rng: np.random.Generator
+) -> FloatArray:
+    """Sums (n, signals) of sines within a band by chance, so many for each signal: `shape` is (signals, sines)."""
+    frequency, phase = rng.uniform(*band_hz, shape), rng.uniform(0.0, 2.0 * np.pi, shape)
     waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * 0.0015
+    return np.stack(waves, axis=-1)
 
 
 def move_freely(
     leg: Leg, recording: FreeMotion, time_s: FloatArray, start_s: float, rng: np.random.Generator
 ) -> LegMotion:
-    """One leg's circling from `start_s` on, for the recording's duration; it hangs still before and after.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    LegMotion
-        Earth axes, z up, metres.
-    """
+    """Circle one leg from `start_s` for the recording's duration; it hangs still before and after."""
     is_lying = recording.motion is Motion.SIDE_LYING
     strength = {Motion.WEAK: 0.4}.get(recording.motion, 1.0)
     tempo = {Motion.WEAK: 0.6}.get(recording.motion, 1.0) * rng.uniform(0.9, 1.1)

@@ -21,10 +21,11 @@ from devices.simulation.walker_motion import (
     JointAngles,
     LegMotion,
     hang_from_hip,
+    noise_in_band,
     rotation_about,
     smooth_step,
 )
-from devices.simulation.walker_sensors import Mounting, SensorClock, interpolate
+from devices.simulation.walker_sensors import Mounting, SensorClock, interpolate, ring_after
 
 HALF_WIDTH_M = 0.085  # the hips' centres are 0.17 m apart
 OBLIQUITY_RAD, ROTATION_RAD, TILT_RAD = np.deg2rad([4.0, 6.0, 2.0])  # over a stride; it tilts twice in it
@@ -50,6 +51,10 @@ class PelvisMotion:
     time_s: FloatArray
     rotations: FloatArray
     centre_m: FloatArray
+
+    def turned(self, rotation: FloatArray) -> "PelvisMotion":
+        """The same in another compass direction; `rotation` (3, 3) about the vertical."""
+        return replace(self, rotations=rotation @ self.rotations, centre_m=self.centre_m @ rotation.T)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,13 +86,7 @@ class PelvisTruth:
 def with_pelvis(
     motions: Mapping[Side, LegMotion], rng: np.random.Generator
 ) -> tuple[PelvisMotion, dict[Side, LegMotion]]:
-    """The pelvis between two moving legs, and the legs as they hang from it.
-
-    Returns
-    -------
-    PelvisMotion, dict of Side to LegMotion
-        On the legs' fine clock, earth axes, z up.
-    """
+    """Give the pelvis between two moving legs and the legs as they hang from it; earth axes, z up."""
     left = motions[Side.LEFT]
     time_s, step_s = left.time_s, float(left.time_s[1] - left.time_s[0])
     thighs = [motion.rotations[0, :, :2, 0] for motion in motions.values()]
@@ -111,25 +110,13 @@ def with_pelvis(
 
 
 def hip_m(pelvis: PelvisMotion, side: Side) -> FloatArray:
-    """Where a hip's centre is.
-
-    Returns
-    -------
-    (n, 3)
-        m, earth axes.
-    """
+    """Give a hip's centre (n, 3), m, in earth axes."""
     outward = 1.0 if side is Side.LEFT else -1.0
     return pelvis.centre_m + outward * HALF_WIDTH_M * pelvis.rotations[:, :, 1]
 
 
 def hung(motion: LegMotion, at_m: FloatArray) -> LegMotion:
-    """A leg carried to where its hip is.
-
-    Parameters
-    ----------
-    at_m : (n, 3)
-        Where the hip's centre is, m, earth axes.
-    """
+    """Carry a leg to its hip's centre (n, 3) in earth axes."""
     return replace(motion, origins_m=motion.origins_m + (at_m - motion.origins_m[0]))
 
 
@@ -162,9 +149,7 @@ def _stride_phase(left: LegMotion, right: LegMotion) -> tuple[FloatArray, FloatA
 
 def _slow(time_s: FloatArray, rng: np.random.Generator, count: int) -> FloatArray:
     """Slow noise (n, count) of unit standard deviation, 0.2 to 0.8 Hz."""
-    frequency, phase = rng.uniform(0.2, 0.8, (count, 4)), rng.uniform(0.0, 2.0 * np.pi, (count, 4))
-    waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * np.sqrt(0.5)
+    return noise_in_band(time_s, (0.2, 0.8), (count, 4), rng) * np.sqrt(0.5)
 
 
 def _liveliness(leg: LegMotion) -> FloatArray:
@@ -177,18 +162,7 @@ def _liveliness(leg: LegMotion) -> FloatArray:
 def lunge(
     legs: Mapping[Side, Leg], recording: FreeMotion, time_s: FloatArray, rng: np.random.Generator
 ) -> tuple[PelvisMotion, dict[Side, LegMotion]]:
-    """Lunges, left and right in turn, with a half turn of the body after every second one.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    PelvisMotion, dict of Side to LegMotion
-        On the fine clock, earth axes, z up.
-    """
+    """Give lunges left and right in turn, with a half turn of the body after every second one."""
     count = max(1, int(recording.duration_s // LUNGE_S))
     down = {side: np.zeros_like(time_s) for side in Side}
     for k in range(count):
@@ -223,22 +197,6 @@ def is_lunging(required: object) -> bool:
     return isinstance(required, FreeMotion) and required.motion is Motion.LUNGES
 
 
-def turned_pelvis(pelvis: PelvisMotion, rotation: FloatArray) -> PelvisMotion:
-    """The same in another compass direction.
-
-    Parameters
-    ----------
-    rotation : (3, 3)
-        About the vertical.
-
-    Returns
-    -------
-    PelvisMotion
-        On the same clock.
-    """
-    return replace(pelvis, rotations=rotation @ pelvis.rotations, centre_m=pelvis.centre_m @ rotation.T)
-
-
 def pelvis_poses(
     pelvis: PelvisMotion,
     contacts_s: FloatArray,
@@ -247,22 +205,7 @@ def pelvis_poses(
     strap: np.random.Generator,
     rng: np.random.Generator,
 ) -> tuple[FloatArray, FloatArray]:
-    """Earth from sensor (n, 3, 3) and its place (n, 3), m, on the fine clock.
-
-    Parameters
-    ----------
-    contacts_s : (k,)
-        Initial contacts of both feet, after which real tissue rings.
-    strap
-        Chance of how this strap rides, alike in every recording of one strapping.
-    rng
-        Chance of the rest.
-
-    Returns
-    -------
-    (n, 3, 3) and (n, 3)
-        Earth from sensor, and m in earth axes.
-    """
+    """Give earth from sensor (n, 3, 3) and place (n, 3), m; `strap` is alike in all recordings of a strapping."""
     if tissue is Tissue.RIGID:
         ridden = pelvis.rotations
     else:
@@ -274,7 +217,9 @@ def pelvis_poses(
         turn = size * np.sqrt(0.5) * (follows + _slow(pelvis.time_s, rng, 3) * np.sqrt(0.5))
         if tissue is Tissue.REAL:
             direction = strap.normal(size=3)
-            ring = _ring(pelvis.time_s, contacts_s, strap.uniform(*RING_HZ))
+            ring = ring_after(
+                pelvis.time_s, contacts_s, np.ones(len(contacts_s)), strap.uniform(*RING_HZ), RING_DECAY_S
+            )
             turn = turn + REAL_RING_RAD * ring[:, None] * direction
         ridden = pelvis.rotations @ _small_turn(turn)
     place = pelvis.centre_m + np.einsum("nij,j->ni", ridden, mounting.place_m)
@@ -282,31 +227,13 @@ def pelvis_poses(
 
 
 def thigh_on_tissue(motion: LegMotion, outward: float, strap: np.random.Generator) -> FloatArray:
-    """How real tissue turns a thigh's sensor against the bone for the thigh's own pitch (n, 3, 3), beside the knee's.
-
-    It stays behind the pitch by 7 to 15 %, rolls by 1.7 deg and turns about its length by 4 to 9 deg.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Rotation of sensor and tissue against the thigh.
-    """
+    """Give the rotation (n, 3, 3) of a thigh's sensor by pitch: 7-15 % behind, rolled 1.7 and turned 4-9 deg."""
     pitch = -np.arcsin(np.clip(motion.rotations[0, :, 2, 0], -1.0, 1.0))
     share = pitch / max(float(np.std(pitch)), np.deg2rad(3.0))
     length_rad = strap.uniform(*REAL_THIGH_LENGTH_RAD) / 2.0
     gain, roll = strap.uniform(*REAL_THIGH_GAIN), REAL_THIGH_ROLL_RAD * strap.choice([-1.0, 1.0])
     turn = np.stack([roll * share * np.sqrt(0.5), gain * pitch, outward * length_rad * share * np.sqrt(0.5)], axis=-1)
     return _small_turn(turn)
-
-
-def _ring(time_s: FloatArray, hits_s: FloatArray, ring_hz: float) -> FloatArray:
-    total = np.zeros_like(time_s)
-    for hit_s in hits_s:
-        since = np.maximum(time_s - hit_s, 0.0)
-        total += (
-            (1.0 - np.exp(-since / 0.015)) ** 3 * np.exp(-since / RING_DECAY_S) * np.sin(2 * np.pi * ring_hz * since)
-        )
-    return total
 
 
 def _small_turn(v: FloatArray) -> FloatArray:

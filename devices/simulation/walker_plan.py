@@ -61,18 +61,7 @@ def plan_walk(
     rng: np.random.Generator,
     changes: StepChanges = NO_CHANGES,
 ) -> WalkPlan:
-    """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    WalkPlan
-        Times in seconds, places in metres.
-    """
+    """Plan footsteps on the fine clock (n,), from the start of the recording."""
     gaits = gaits_of(walk.speed_m_s, walk.manner_of_side, walk.manner)
     gait = gaits[first]
     stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
@@ -111,7 +100,6 @@ def plan_walk(
     }
     bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * walk.turn_radius_m, 0.1))
     duration_s = float(stopped + walk.standing_after_s + 0.4 * stride_s)
-    duration_s = float(stopped + walk.standing_after_s + 0.4 * stride_s)
     return WalkPlan(gaits, duration_s, hip_path, plans, (bend,), walk.pivot_share)
 
 
@@ -123,22 +111,7 @@ def plan_foot(
     stride_time: FloatArray,
     changes: FootChanges,
 ) -> StepPlan:
-    """The stances of one foot from when it lands and where its ankle then is.
-
-    Parameters
-    ----------
-    contact_s : (k,)
-        Ascending.
-    ankle_m : (k + 1,)
-        Along the path, the place of standing first.
-    stride_time : (k,)
-        Each stride's time over the usual one.
-
-    Returns
-    -------
-    StepPlan
-        Of k + 1 stances.
-    """
+    """Plan a foot's k + 1 stances from contacts (k,) and ankle places (k + 1,), standing first."""
     full_contact, heel_rise = (0.14, 0.30) if is_prosthetic else (gait.full_contact, gait.heel_rise)
     swing_s = (1.0 - gait.stance - 0.01 * changes.stance_percent) * gait.stride_s * stride_time
     starts = np.concatenate([[-np.inf], contact_s])
@@ -155,18 +128,7 @@ def plan_foot(
 
 
 def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
-    """Both feet side by side, no step.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    WalkPlan
-        Without steps.
-    """
+    """Plan standing with both feet side by side, without a step."""
     gait = gait_at(1.19)
     place_m = np.array([-HIP_AHEAD_OF_ANKLE_M])
     foot = plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))

@@ -31,29 +31,16 @@ LEAST_FLAT_S = 0.03  # of a foot that is hardly flat before its heel rises
 class ProsthesisSetting:
     """A prosthesis against how it was built.
 
-    Attributes
-    ----------
-    plantar_deg
-        The foot against the pylon, plantarflexed positive.
-    back_mm, height_mm
-        The foot further back, the pylon longer.
-    stop_deg
-        How much earlier the knee is stopped in extending.
-    extension
-        Resistance to extension in late swing over that as built.
-    swing_flexion_deg
-        Added to the knee's peak in swing, by less resistance to flexion.
-    stance_flexion
-        Of the peak of loading the share that resistance in stance allows.
+    `back_mm`, `height_mm`: the foot further back, the pylon longer.
     """
 
-    plantar_deg: float = 0.0
+    plantar_deg: float = 0.0  # the foot against the pylon, plantarflexed positive
     back_mm: float = 0.0
     height_mm: float = 0.0
-    stop_deg: float = 0.0
-    extension: float = 1.0
-    swing_flexion_deg: float = 0.0
-    stance_flexion: float = 1.0
+    stop_deg: float = 0.0  # how much earlier the knee is stopped in extending
+    extension: float = 1.0  # resistance to extension in late swing over that as built
+    swing_flexion_deg: float = 0.0  # added to the knee's peak in swing, by less resistance to flexion
+    stance_flexion: float = 1.0  # of the peak of loading the share that resistance in stance allows
 
     def __post_init__(self) -> None:
         if not self.extension > 0.0:

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from core.body import Segment, Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
 from devices.simulation.walker_body import SENSOR_PLACES_M, Leg, SensorErrors, Tissue, WalkerSettings
-from devices.simulation.walker_motion import LegMotion, rotation_about
+from devices.simulation.walker_motion import LegMotion, noise_in_band, rotation_about
 
 GRAVITY_M_S2 = np.array([0.0, 0.0, -9.81])
 SEGMENT_ROW = {Segment.THIGH: 0, Segment.SHANK: 1, Segment.FOOT: 2}
@@ -72,18 +72,7 @@ def draw_ride(rng: np.random.Generator) -> Ride:
 
 
 def draw_mounting(site: Site, spread_m: float, rng: np.random.Generator) -> Mounting:
-    """Any rotation alike, near the nominal place of the segment.
-
-    Parameters
-    ----------
-    spread_m
-        Standard deviation of each coordinate of the place.
-
-    Returns
-    -------
-    Mounting
-        In segment axes.
-    """
+    """Draw any rotation alike, near the segment's nominal place, `spread_m` being the SD of each coordinate."""
     q = rng.normal(size=4)
     w, x, y, z = q / np.linalg.norm(q)
     v = np.array([x, y, z])
@@ -114,22 +103,7 @@ def sensor_poses(
     following: FloatArray | None = None,
     wobble: float = 1.0,
 ) -> tuple[FloatArray, FloatArray]:
-    """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock; chance makes the wobble of real tissue alone.
-
-    With `following` (n, 3, 3) the sensor and the tissue under it are turned so against their segment.
-
-    Parameters
-    ----------
-    following : (n, 3, 3) or None
-        Rotation of sensor and tissue against their segment.
-    wobble
-        How much of real tissue's slow wobble there is.
-
-    Returns
-    -------
-    (n, 3, 3) and (n, 3)
-        Earth from sensor, and its place in m, earth axes, z up.
-    """
+    """Give earth from sensor (n, 3, 3) and place (n, 3), m, earth z up; `following` turns it with its tissue."""
     row = SEGMENT_ROW[site.segment]
     segment, origin = leg.rotations[row], leg.origins_m[row]
     if following is not None:
@@ -153,12 +127,13 @@ def _tissue_motion(
     follows = [flexion / np.deg2rad(60.0), gaussian_filter1d(np.gradient(flexion, step_s), 0.01 / step_s) / 4.0]
     contacts_s = leg.events.initial_contact_s
     if tissue is Tissue.SOFT:
-        drives = np.stack([*follows, 2.0 * _ring(t, contacts_s, np.ones(len(contacts_s)), RING_HZ, RING_DECAY_S)], -1)
+        ring = ring_after(t, contacts_s, np.ones(len(contacts_s)), RING_HZ, RING_DECAY_S)
+        drives = np.stack([*follows, 2.0 * ring], axis=-1)
         return share * TISSUE_RAD * (drives @ ride.turn), share * TISSUE_M * (drives @ ride.shift)
     hits_s = np.concatenate([contacts_s, leg.events.toe_off_s])
     sizes = np.repeat([1.0, REAL_TOE_OFF_RING], [len(contacts_s), len(leg.events.toe_off_s)])
     sizes = sizes * np.exp(rng.normal(0.0, REAL_RING_STEADINESS, len(hits_s)))
-    ring = REAL_RING * REAL_SHARE[segment] / share * _ring(t, hits_s, sizes, ride.ring_hz, ride.ring_decay_s)
+    ring = REAL_RING * REAL_SHARE[segment] / share * ring_after(t, hits_s, sizes, ride.ring_hz, ride.ring_decay_s)
     drives = np.stack([*(REAL_RIDE * drive for drive in follows), ring], axis=-1)
     moving = _is_moving(leg)[:, None]
     usual = REAL_WALK_WOBBLE if len(contacts_s) else REAL_FREE_WOBBLE
@@ -175,18 +150,7 @@ def _tissue_motion(
 def turn_in_step(
     motion: LegMotion, leg: Leg, segment: Segment, size_rad: float, rng: np.random.Generator
 ) -> FloatArray:
-    """How tissue turns a sensor about the flexion axis while its leg walks: once and twice in a stride, by chance.
-
-    Parameters
-    ----------
-    size_rad
-        Root mean square at a thigh, times the square root of two; other segments have their share of tissue.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Rotation of the sensor against its segment.
-    """
+    """Turn a sensor about flexion once and twice a stride; `size_rad` is rms times root 2 at a thigh."""
     contacts_s = motion.events.initial_contact_s
     phase_1, phase_2 = rng.uniform(0.0, 2.0 * np.pi, 2)
     strides = np.interp(motion.time_s, contacts_s, np.arange(len(contacts_s))) if len(contacts_s) else 0.0
@@ -204,7 +168,7 @@ def _liveliness(leg: LegMotion) -> float:
     return min(1.0, float(np.mean(moving**2)) / USUAL_KNEE_RAD_S**2) if len(moving) else 0.0
 
 
-def _ring(t: FloatArray, hits_s: FloatArray, sizes: FloatArray, ring_hz: float, decay_s: float) -> FloatArray:
+def ring_after(t: FloatArray, hits_s: FloatArray, sizes: FloatArray, ring_hz: float, decay_s: float) -> FloatArray:
     """A decaying oscillation (n,) after each hit, that begins smoothly."""
     ring = np.zeros_like(t)
     for hit_s, size in zip(hits_s, sizes, strict=True):
@@ -227,10 +191,7 @@ def _direction(rng: np.random.Generator) -> FloatArray:
 
 def _wobble(t: FloatArray, band_hz: tuple[float, float], rng: np.random.Generator) -> FloatArray:
     """Band noise (n, 3) of unit standard deviation: a few sines each within `band_hz`."""
-    count = 5
-    frequency, phase = rng.uniform(*band_hz, (3, count)), rng.uniform(0.0, 2.0 * np.pi, (3, count))
-    waves = [np.sin(2.0 * np.pi * np.outer(t, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * np.sqrt(2.0 / count)
+    return noise_in_band(t, band_hz, (3, 5), rng) * np.sqrt(2.0 / 5)
 
 
 def _bursts(t: FloatArray, rng: np.random.Generator) -> FloatArray:
@@ -246,17 +207,7 @@ def _is_moving(leg: LegMotion) -> FloatArray:
 
 
 def small_rotation(v: FloatArray) -> FloatArray:
-    """Rotation matrices of rotation vectors.
-
-    Parameters
-    ----------
-    v : (n, 3)
-        rad.
-
-    Returns
-    -------
-    (n, 3, 3)
-    """
+    """Give rotation matrices (n, 3, 3) of rotation vectors (n, 3)."""
     angle = np.linalg.norm(v, axis=1)
     k = np.zeros((len(v), 3, 3))
     k[:, 0, 1], k[:, 0, 2], k[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
@@ -267,18 +218,7 @@ def small_rotation(v: FloatArray) -> FloatArray:
 
 
 def angular_rate(rotations: FloatArray, step_s: float) -> FloatArray:
-    """Rate in sensor axes (n, 3) of earth-from-sensor (n, 3, 3) by central differences; two at each end repeat.
-
-    Parameters
-    ----------
-    rotations : (n, 3, 3)
-        Earth from sensor.
-
-    Returns
-    -------
-    (n, 3)
-        rad/s, in sensor axes.
-    """
+    """Differentiate earth-from-sensor to rates (n, 3) in sensor axes, rad/s; two at each end repeat."""
     near = _rotation_between(rotations[1:-3], rotations[3:-1])
     far = _rotation_between(rotations[:-4], rotations[4:])
     return _repeat_ends((8.0 * near - far) / (12.0 * step_s))
@@ -294,18 +234,7 @@ def _rotation_between(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def acceleration(place_m: FloatArray, step_s: float) -> FloatArray:
-    """Second derivative (n, 3) of a path by central differences; two at each end repeat.
-
-    Parameters
-    ----------
-    place_m : (n, 3)
-        In earth axes.
-
-    Returns
-    -------
-    (n, 3)
-        m/s2, in earth axes, without gravity.
-    """
+    """Differentiate a path (n, 3) twice, m/s2, without gravity; two at each end repeat."""
     p = place_m
     return _repeat_ends((-p[:-4] + 16.0 * p[1:-3] - 30.0 * p[2:-2] + 16.0 * p[3:-1] - p[4:]) / (12.0 * step_s**2))
 
@@ -315,20 +244,7 @@ def _repeat_ends(inner: FloatArray) -> FloatArray:
 
 
 def interpolate(signal: FloatArray, at: FloatArray) -> FloatArray:
-    """Cubic through the four nearest values of `signal` (n, ...), at fractional indices (m,).
-
-    Parameters
-    ----------
-    signal : (n, ...)
-        In any unit.
-    at : (m,)
-        Fractional indices.
-
-    Returns
-    -------
-    (m, ...)
-        In that unit.
-    """
+    """Interpolate (n, ...) at fractional indices (m,) by cubics through the four nearest values."""
     i = np.clip(np.floor(at).astype(int), 1, len(signal) - 3)
     u = (at - i).reshape(-1, *(1,) * (signal.ndim - 1))
     a, b, c, d = (signal[i + k] for k in (-1, 0, 1, 2))
@@ -359,18 +275,7 @@ class SensorClock:
 
 
 def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.random.Generator) -> SensorClock:
-    """The instants at which one sensor samples, with its lag, pace, jitter and losses.
-
-    Parameters
-    ----------
-    duration_s
-        Of the recording, on the true clock.
-
-    Returns
-    -------
-    SensorClock
-        True instants and stamps (m,), s.
-    """
+    """Give the instants and stamps (m,) of one sensor, with its lag, pace, jitter and losses."""
     rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)
     late_s, pace = settings.clock_late_s.get(site, 0.0), settings.clock_rate.get(site, 1.0)
     # samples come at the rate that the sensor's own clock calls `rate_hz`
@@ -404,20 +309,7 @@ def record(
     faults: SensorFaults,
     rng: np.random.Generator,
 ) -> tuple[ImuBlock, FloatArray]:
-    """One sensor's samples over one recording, and the gyroscope's bias at each (m, 3).
-
-    Parameters
-    ----------
-    fine_s : (n,)
-        Fine clock, from the start of the recording.
-    poses : (n, 3, 3) and (n, 3)
-        Earth from sensor, and its place in m, at `fine_s`.
-
-    Returns
-    -------
-    ImuBlock and (m, 3)
-        In sensor axes; the bias in rad/s.
-    """
+    """Record one sensor over a recording, and its gyroscope's bias (m, 3), rad/s; poses at `fine_s`."""
     rotations, place = poses
     step_s = float(fine_s[1] - fine_s[0])
     rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)

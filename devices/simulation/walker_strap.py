@@ -14,22 +14,7 @@ TURN_RAD_PER_M_S2, SHIFT_M_PER_M_S2 = np.deg2rad(0.3), 0.0003  # a foot swings w
 def on_loose_strap(
     poses: tuple[FloatArray, FloatArray], mounting: Mounting, looseness: float, time_s: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The poses of a sensor that swings on its strap as a mass on a spring, driven by what its segment does.
-
-    Parameters
-    ----------
-    poses : (n, 3, 3) and (n, 3)
-        Earth from sensor, and its place in m, earth axes, z up.
-    looseness
-        0: none; 1: some degrees in swing and after landing.
-    time_s : (n,)
-        Fine clock.
-
-    Returns
-    -------
-    (n, 3, 3) and (n, 3)
-        As `poses`.
-    """
+    """Give the poses of a sensor that swings on its strap as a mass on a spring; `looseness` 1: some degrees."""
     if looseness <= 0.0:
         return poses
     rotations, place_m = poses

@@ -14,13 +14,7 @@ BUMP_SHARE = 0.3  # the bump's steepest slope is then the belt's speed
 
 
 def on_treadmill(motions: Mapping[Side, LegMotion], belt: Treadmill, speed_m_s: float) -> dict[Side, LegMotion]:
-    """Both legs on a belt that slows down when a foot lands, seen from its mean speed; they walk along +x.
-
-    Returns
-    -------
-    dict of Side to LegMotion
-        Earth axes, z up, metres.
-    """
+    """Move both legs on a belt that slows at landings, seen from its mean speed; they walk along +x."""
     up_hill = rotation_about(Y_AXIS, np.array([-np.arctan(belt.slope)]))[0]
     time_s = motions[Side.LEFT].time_s
     moved_m = np.zeros_like(time_s)

@@ -19,19 +19,11 @@ FUNCTIONAL_EVERY = 5  # fine samples; the principal direction of a motion needs 
 class JointTruth:
     """One joint in one recording. Axes (in clinical sign) and centres (joint to sensor): (3,), in sensor axes.
 
-    Attributes
-    ----------
-    functional_proximal, functional_distal : (3,)
-        Principal direction of the bones' relative rate over the whole session; on a hinge it is the axis.
-    lag_s
-        Added to the distal sensor's stamps it brings them to the proximal sensor's clock; where clocks run at rates of
-        their own, at the start.
-    standing_rad
-        Mean angle in the session's first standing, NaN without one.
-    time_s, angle_rad : (n,)
-        The angle, zero in the anatomical neutral position, at the proximal sensor's stamps.
-    sensor_gain
-        By what share of the angle the sensors turn further than the bones, by tissue and strapping.
+    `functional_proximal`, `functional_distal`: (3,): principal direction of the bones' relative rate over the whole
+    session; on a hinge it is the axis.
+    `lag_s`: added to the distal sensor's stamps it brings them to the proximal sensor's clock; where clocks run at
+    rates of their own, at the start.
+    `time_s`, `angle_rad`: (n,): the angle, zero in the anatomical neutral position, at the proximal sensor's stamps.
     """
 
     axis_proximal: FloatArray
@@ -41,28 +33,23 @@ class JointTruth:
     centre_proximal_m: FloatArray
     centre_distal_m: FloatArray
     lag_s: float
-    standing_rad: float
+    standing_rad: float  # mean angle in the session's first standing, NaN without one
     time_s: FloatArray
     angle_rad: FloatArray
-    sensor_gain: float
+    sensor_gain: float  # by what share of the angle the sensors turn further than the bones, by tissue and strapping
 
 
 @dataclass(frozen=True, slots=True)
 class FootTruth:
     """One foot in one recording, on the true clock.
 
-    Attributes
-    ----------
-    footholds_m : (i, 2)
-        Where the ankle is over the floor at each stance, the first and the last being standing.
-    ankle_path_m : (m, 3)
-        Earth axes, z up, at the instants `time_s` (m,).
+    `footholds_m`: (i, 2): where the ankle is over the floor at each stance, the first and the last being standing.
     """
 
     events: TrueFootEvents
     footholds_m: FloatArray
     time_s: FloatArray
-    ankle_path_m: FloatArray
+    ankle_path_m: FloatArray  # (m, 3): earth axes, z up, at the instants `time_s` (m,)
 
     @property
     def stride_lengths_m(self) -> FloatArray:
@@ -111,18 +98,7 @@ def show_truth(
     moved: Sequence[MovedRecording],
     acc_bias_m_s2: Mapping[Site, FloatArray],
 ) -> SessionTruth:
-    """All that is known of `moved`, in the terms of the sensors.
-
-    Parameters
-    ----------
-    acc_bias_m_s2
-        (3,) by site, in sensor axes.
-
-    Returns
-    -------
-    SessionTruth
-        Angles in rad, clinical sign; axes and places in sensor axes.
-    """
+    """Give what is known of `moved` in sensor terms: rad, clinical sign, sensor axes."""
     joints = [j for j in LEG_JOINTS if j.proximal in settings.sites and j.distal in settings.sites]
     functional = {joint: _functional_axes(joint, legs[joint.side], moved) for joint in joints}
     standing = {joint: _standing_angle(joint, moved) for joint in joints}

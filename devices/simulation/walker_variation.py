@@ -92,13 +92,7 @@ class StrideSeries:
 
 
 def draw_gain(settings: WalkerSettings, joint: Joint, strapping: int) -> float:
-    """By what share of the angle the sensors at a joint read more, with the straps of recording `strapping`.
-
-    Returns
-    -------
-    float
-        A share without unit; 0.1 reads 10 % more.
-    """
+    """Draw by what share of the angle a joint's sensors read more (0.1 is 10 %), with that strapping."""
     who = list(Joint).index(joint)
     of_leg = np.random.default_rng([settings.body, 12, who]).normal()
     of_strap = np.random.default_rng([settings.seed, 13, who, strapping]).normal()
@@ -110,20 +104,7 @@ def draw_gain(settings: WalkerSettings, joint: Joint, strapping: int) -> float:
 
 
 def follow_joint(leg: LegMotion, axis: FloatArray, joint: Joint, site: Site, gain: float) -> FloatArray | None:
-    """How far the thigh's sensor stays behind its knee, or the foot's runs ahead of its ankle: (n, 3, 3).
-
-    Parameters
-    ----------
-    axis : (3,)
-        Unit axis of the joint, in its segments' axes.
-    gain
-        Share of the angle that the sensor reads more.
-
-    Returns
-    -------
-    (n, 3, 3) or None
-        Rotation of the sensor against its segment; None where there is none.
-    """
+    """Give the rotation (n, 3, 3) by which a thigh's sensor lags or a foot's leads; None without."""
     if gain == 0.0 or site is not (joint.proximal if joint.is_knee else joint.distal):
         return None
     return rotation_about(axis, -gain * leg.angles.knee if joint.is_knee else gain * leg.angles.ankle)

@@ -40,26 +40,14 @@ class BluetoothMissingError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Announced:
-    """Something that announces itself.
-
-    Attributes
-    ----------
-    companies
-        Who made it, by what it announces besides its name.
-    services
-        The UUIDs that it announces, in small letters.
-    device
-        As the library wants it for a link.
-    rssi_dbm
-        How strongly it was received; None: that was not reported.
-    """
+    """Something that announces itself."""
 
     name: str
     address: str
-    companies: tuple[int, ...] = ()
-    device: "BLEDevice | str" = ""
-    services: tuple[str, ...] = ()
-    rssi_dbm: int | None = None
+    companies: tuple[int, ...] = ()  # who made it, by what it announces besides its name
+    device: "BLEDevice | str" = ""  # as the library wants it for a link
+    services: tuple[str, ...] = ()  # the UUIDs that it announces, in small letters
+    rssi_dbm: int | None = None  # how strongly it was received; None: that was not reported
 
 
 class Radio:
@@ -89,10 +77,7 @@ class Radio:
         return host_time_ns()
 
     def run(self, work: Coroutine[Any, Any, Result], tick: Tick | None = None) -> Result:
-        """Do this in the thread of the links, and wait for it.
-
-        `tick` is called by who waits, some times a second. What it raises ends the work, is waited for, and is raised.
-        """
+        """Run the work in the links' thread and wait; an error of `tick` ends the work, then is raised."""
         loop = self._running()
         if tick is None:
             return asyncio.run_coroutine_threadsafe(work, loop).result()
@@ -112,13 +97,7 @@ class Radio:
         event.wait(seconds)
 
     async def announced(self, seconds: float = SCAN_S) -> list[Announced]:
-        """Who announces itself within so long.
-
-        Raises
-        ------
-        SourceRefusedError
-            There is no Bluetooth here, or it is switched off.
-        """
+        """Scan for announcements; raises SourceRefusedError without Bluetooth or where it is off."""
         if self.received is not None:
             return list(self.received())
         if find_spec("bleak") is None:
@@ -126,7 +105,7 @@ class Radio:
                 "Bluetooth LE sensors cannot connect: a software library is missing",
                 "Install gaitwright[bluetooth]",
             )
-        import bleak
+        import bleak  # an extra
 
         async with self.connecting:
             try:
@@ -176,7 +155,7 @@ class BluetoothLink:
 
     async def connect(self) -> None:
         """Connect, one at a time with all other links of the adapter."""
-        from bleak import BleakClient
+        from bleak import BleakClient  # an extra
 
         if self.is_up:
             return
@@ -222,7 +201,7 @@ class BluetoothLink:
 
     @asynccontextmanager
     async def _lost_within(self, seconds: float) -> AsyncIterator[None]:
-        from bleak.exc import BleakError
+        from bleak.exc import BleakError  # an extra
 
         try:
             async with asyncio.timeout(seconds):

@@ -40,6 +40,11 @@ class NotificationFrames:
         self._held = held[at:]
         return found
 
+    def newly_damaged(self) -> int:
+        """How many were damaged since this was asked last."""
+        found, self.damaged = self.damaged, 0
+        return found
+
     def flush(self) -> None:
         """Nothing follows: what was held back was cut."""
         self.damaged += bool(self._held)

@@ -64,7 +64,8 @@ def list_ports() -> tuple[PortInfo, ...]:
         for port in listing.comports()
     ]
     named = [path for path in os.environ.get(MORE_PORTS, "").split(os.pathsep) if path]
-    found += [PortInfo(path, "named by " + MORE_PORTS, is_named=True) for path in named if _may_be_there(path)]
+    there = [path for path in named if os.name == "nt" or Path(path).exists()]  # COM7 is no file
+    found += [PortInfo(path, "named by " + MORE_PORTS, is_named=True) for path in there]
     return tuple(sorted(found, key=lambda port: (port.usb is None and not port.is_named, port.device)))
 
 
@@ -74,7 +75,7 @@ class SerialPort:
     def __init__(
         self, port: PortInfo, baud: int = 115200, list_all: Callable[[], Sequence[PortInfo]] = list_ports
     ) -> None:
-        self._port, self._baud, self._list_all = port, baud, list_all
+        self._port, self.baud, self._list_all = port, baud, list_all
         self._opened: Serial | None = None
         self._looked_s = 0.0
 
@@ -86,16 +87,11 @@ class SerialPort:
     def serial(self) -> str:
         return self._port.serial
 
-    @property
-    def baud(self) -> int:
-        return self._baud
-
     def open(self) -> None:
         self._find()
+        exclusive = True if os.name == "posix" else None  # elsewhere a port always is
         try:
-            self._opened = Serial(
-                self._port.device, self._baud, timeout=READ_S, write_timeout=0.5, exclusive=_may_be_exclusive()
-            )
+            self._opened = Serial(self._port.device, self.baud, timeout=READ_S, write_timeout=0.5, exclusive=exclusive)
         except (OSError, ValueError) as problem:  # the library's own error is an OSError
             raise _refusal(self._port.device, problem) from problem
 
@@ -131,14 +127,6 @@ class SerialPort:
     def _find(self) -> None:
         if self._port.serial and self._port.usb:
             self._port = next((port for port in self._list_all() if self._port.is_same(port)), self._port)
-
-
-def _may_be_there(path: str) -> bool:
-    return os.name == "nt" or Path(path).exists()  # COM7 is no file
-
-
-def _may_be_exclusive() -> bool | None:
-    return True if os.name == "posix" else None  # elsewhere a port always is
 
 
 def _refusal(device: str, problem: Exception) -> SourceRefusedError:

@@ -10,7 +10,8 @@ from core.body import Site
 from core.samples import ImuBlock
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 
 SECONDS, RATE_HZ = 4, 50
 NOBODY = Patient()
@@ -28,7 +29,7 @@ def swinging_session(seed: int, patient: Patient = NOBODY, notes: str = "") -> S
 @cache
 def walked_session() -> Session:
     """A patient on whom everything was typed that states who it is, with a walk of both legs."""
-    session = simulate(WalkerSettings(seed=3, recordings=(Standing(), FreeMotion(), Walk(strides=8)))).session
+    session = session_of(WalkerSettings(seed=3, recordings=(Standing(), FreeMotion(), Walk(strides=8))))
     recordings = tuple(
         replace(one, condition="barefoot" if one.kind is RecordingKind.WALKING else "", note="Anna Muster limped")
         for one in session.recordings

@@ -1,13 +1,15 @@
-"""What tests of the screen get: a watchdog over its thread, a language as long as German, a theme, the results."""
+"""What tests of the screen get: a watchdog over its thread, a long language, a theme, settings, the results."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QEvent
+from PySide6.QtCore import QEvent, QSettings
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ResultPage
+from app.system.settings import Settings
 from app.theme.current import current_theme, load_fonts, set_theme
 from app.theme.theme import Theme
 from app.wording.translation import use_language
@@ -48,6 +50,12 @@ def theme_as_before(qapp: QApplication, usual_theme: Theme) -> Iterator[None]:
         # what the test closed is gone first: a scene that Python let go of must not be given of a change
         qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
         set_theme(usual_theme)
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    """Settings of one test, which nobody has changed yet."""
+    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
 
 
 @pytest.fixture

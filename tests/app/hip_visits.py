@@ -2,26 +2,29 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import cache
 
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.results import Analysis
 from core.session import Session
 from tests.app.changed_analysis import visit_of
-from tests.core.hip.hip_sessions import analysed, walk_of
+from tests.core.hip.hip_sessions import settings, walk_of
+from tests.simulated import analysis_of, session_of
 
 LATE_S = 0.04
 MADE_AT = datetime(2026, 11, 24, 12, tzinfo=UTC)
 
 
+@cache
 def hip_analysis() -> Analysis:
     """A clock per leg, the right one late, found through the hips; all is read but the pelvis's tilt."""
-    return analysed(late_s=LATE_S)[1]
+    return analysis_of(session_of(settings(late_s=LATE_S)))
 
 
 def hip_session() -> Session:
     """What it was made of."""
-    session = analysed(late_s=LATE_S)[0].session
+    session = session_of(settings(late_s=LATE_S))
     return replace(session, patient=replace(session.patient, code="P-001"))
 
 

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QAbstractButton, QAbstractScrollArea, QApplication
 
 from app.widgets.choice import Choice
 from app.widgets.painted_text import PaintedText
+from app.widgets.table import CellTable
 
 SLACK = 1.5  # px: metrics are rounded up, letters are not that wide
 
@@ -123,3 +124,19 @@ def _cut_by_parents(ink: QRect, widget: QWidget, page: QWidget, words: str) -> I
 
 def _stated(widget: QWidget, words: str, what: str) -> str:
     return f"{type(widget).__name__} {widget.width()} x {widget.height()} “{words}” {what}"
+
+
+def is_cut(widget: QWidget) -> bool:
+    """Return whether a widget has less room than its words need."""
+    if isinstance(widget, QLabel):
+        room = widget.size().shrunkBy(widget.contentsMargins())
+        flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
+        needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
+        return needed.width() > room.width() or needed.height() > room.height()
+    if isinstance(widget, CellTable):
+        is_narrow = any(widget.columnWidth(k) < need for k, need in enumerate(widget.needed_widths))
+        return is_narrow or widget.height() < widget.minimumSizeHint().height()
+    if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
+        need = widget.minimumSizeHint()
+        return need.width() > widget.width() or need.height() > widget.height()
+    return False

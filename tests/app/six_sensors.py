@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from app.exports.result_folder import write_results
-from core.analysis import analyse
 from core.body import Side, Site
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "six_sensors.json"
 RIGHT_LATE = dict.fromkeys((Site.RIGHT_THIGH, Site.RIGHT_SHANK, Site.RIGHT_FOOT), 0.04)
@@ -57,7 +57,7 @@ def written(session: Session) -> dict[str, bytes]:
     """Every file of a session's results by its name."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        write_results(session, analyse(session), folder)
+        write_results(session, analysis_of(session), folder)
         files = sorted(path for path in folder.rglob("*") if path.is_file())
         return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
@@ -86,6 +86,6 @@ if __name__ == "__main__":
     kept = before["digests"] if before["machine"] == machine() else {}
     reported: dict[str, Any] = {"machine": machine(), "digests": kept | {vectors(): {}}, "structure": {}}
     for case, settings in SESSIONS.items():
-        content = written(simulate(settings).session)
+        content = written(session_of(settings))
         reported["digests"][vectors()][case], reported["structure"][case] = digests(content), structure(content)
     GOLDEN.write_text(json.dumps(reported, indent=1) + "\n", encoding="utf-8")

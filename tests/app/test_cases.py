@@ -14,15 +14,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.cli import agree, import_files, places
 from app.cli.main import main
-from app.importing import untrusted_files as foreign_files
 from core.body import Site
 from core.samples import ImuBlock
 from devices.files.formats import read_trial
 from devices.files.references.reading import read_reference
 from devices.files.session_folder import read_session, write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.benchmarks.long import repeated
+from tests.simulated import simulation_of
 
 CASES = "cases"
 
@@ -141,7 +142,9 @@ def dot_every_second_lost(case: Case) -> None:
 
 
 def c3d_over_65535_frames(case: Case) -> None:
-    simulated = simulate(WalkerSettings(seed=1, rate_hz=200.0, recordings=(Standing(), FreeMotion(), Walk(strides=10))))
+    simulated = simulation_of(
+        WalkerSettings(seed=1, rate_hz=200.0, recordings=(Standing(), FreeMotion(), Walk(strides=10)))
+    )
     standing, motion, walk = simulated.session.recordings
     long = replace(walk, imu={site: repeated(block, 330.0) for site, block in walk.imu.items()})
     session = case.out.with_name("session")
@@ -236,12 +239,15 @@ def case(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
 ) -> Case:
     """Files are read in this process, as the limited one reads them."""
-    monkeypatch.setattr(foreign_files, "read_foreign_session", lambda folder, _waiting: read_session(folder))
-    monkeypatch.setattr(foreign_files, "read_foreign_reference", lambda path, _waiting: read_reference(path))
-    monkeypatch.setattr(foreign_files, "write_over_session", write_session)
-    monkeypatch.setattr(
-        foreign_files, "read_foreign_trial", lambda name, files, rate_hz, _waiting: read_trial(name, files, rate_hz)
-    )
+    read_here: dict[str, Any] = {
+        "read_foreign_session": lambda folder, _waiting: read_session(folder),
+        "read_foreign_reference": lambda path, _waiting: read_reference(path),
+        "write_over_session": write_session,
+        "read_foreign_trial": lambda name, files, rate_hz, _waiting: read_trial(name, files, rate_hz),
+    }
+    for module in (agree, import_files, places):
+        for name in read_here.keys() & vars(module).keys():
+            monkeypatch.setattr(module, name, read_here[name])
     return Case(tmp_path / "out", capsys)
 
 

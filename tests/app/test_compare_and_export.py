@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.compare import DIFFERENCES, FLAGS, _table
+from app.cli.arguments import DIFFERENCES
+from app.cli.compare import FLAGS, _table
 from app.cli.main import main
 from app.summary.comparison import Contrast
 from app.summary.differences import Row, comparisons_of, rows_of, without_common_condition

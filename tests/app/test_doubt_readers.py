@@ -8,26 +8,26 @@ import pytest
 from app.reports.patient.document import make_report
 from app.results.result_page import ResultPage
 from app.summary.request import AnalysedVisit, ReportRequest
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.parameters import BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis, ZeroKind
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.doubt_readers import Doubts, Stated, stated_in_report, stated_on_screen
+from tests.simulated import analysis_of, session_of
 
 pytestmark = pytest.mark.endurance  # `test_exported_doubt` holds the same of four sessions in every run
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return simulate(DEMONSTRATION).session
+    return session_of(DEMONSTRATION)
 
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 def read(session: Session, analysis: Analysis, result_page: ResultPage) -> tuple[Doubts, Doubts]:

@@ -27,13 +27,13 @@ from app.reports.patient.document import make_report
 from app.results.result_page import ResultPage
 from app.review.rerun_log import write_log
 from app.summary.request import AnalysedVisit, ReportRequest
-from core.analysis import analyse
 from core.body import LEG_SITES, Side, Site
 from core.results import Analysis
 from core.session import Recording, Session
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
 from devices.simulation.walker_body import GaitChange
 from tests.app.doubt_readers import Stated, stated_in_report, stated_on_screen
+from tests.simulated import analysis_of, session_of
 
 NUMBER = (int, float)
 READ, CARE, SHAPE, NOT_REPORTED = "read", "care", "shape", "withheld"
@@ -131,8 +131,8 @@ def case(request: pytest.FixtureRequest) -> Case:
 
 @pytest.fixture(scope="module")
 def analysed(case: Case) -> tuple[Session, Analysis]:
-    session = case.change(simulate(case.settings).session)
-    return session, analyse(session)
+    session = case.change(session_of(case.settings))
+    return session, analysis_of(session)
 
 
 NOT_WRITTEN = "not_written"  # what the export stated of files that it left out

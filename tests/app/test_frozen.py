@@ -87,7 +87,7 @@ def test_other_programs_get_the_systems_libraries_and_ours_begin_again(
 
 
 def test_the_word_is_no_subcommand_and_no_option() -> None:
-    from app.cli.main import SUBCOMMANDS
+    from app.cli.parser import SUBCOMMANDS
 
     assert child.WORD not in SUBCOMMANDS
     assert not child.WORD.startswith("-")

@@ -9,10 +9,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QMimeData, QPointF, QSettings, Qt, QUrl
+from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QLineEdit, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
 from app import main_window
@@ -37,8 +37,10 @@ from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, set_scale
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.wizard import Wizard
 from app.wording.translation import use_language
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.app.room import is_cut
 
 PASSPHRASE = "four short words here"
 SECRET_CODE = "P-0147"
@@ -61,11 +63,6 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def folder(untouched: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(untouched, tmp_path / "library"))
-
-
-@pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
 
 
 Open = Callable[[Path | None], MainWindow]
@@ -340,7 +337,8 @@ def _key_of(window: MainWindow) -> DataKey | None:
     return window.controller.state.library.data_key
 
 
-def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+def renewed(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, KeySlots]:
+    """A window that shows a recovery key made again, since the one before was never typed back."""
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
     window = open_window(folder)
@@ -352,6 +350,13 @@ def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Op
     qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
     page.renew.click()
     qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
+    return window, slots
+
+
+def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window, slots = renewed(qtbot, open_window, folder)
+    assert window.entry is not None
+    page = window.entry.first_start
     assert page.print.isVisible()
     page.typed.set_text("-".join(page.recovery_key.split("-")[-2:]))
     page.go.click()
@@ -362,17 +367,9 @@ def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Op
 def test_a_new_recovery_key_is_covered_by_the_lock_and_not_shown_again(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
-    slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
-    window = open_window(folder)
+    window, slots = renewed(qtbot, open_window, folder)
     assert window.entry is not None
     page, log_in = window.entry.first_start, window.entry.log_in
-    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
-    log_in.passphrase.set_text(PASSPHRASE)
-    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
-    page.renew.click()
-    qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
     key = page.recovery_key
     window.idle.lock_now()
     assert window.is_covered
@@ -463,13 +460,18 @@ def test_help_opens_over_home_and_leads_back(qtbot: QtBot, open_window: Open, fo
     assert window.screens.currentWidget() is window.home
 
 
-def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+def in_a_visit(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, Wizard]:
     window = open_window(folder)
     logged_in(qtbot, window)
     assert window.home is not None
     QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
     wizard = window.wizard
     assert wizard is not None
+    return window, wizard
+
+
+def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window, wizard = in_a_visit(qtbot, open_window, folder)
     assert window.screens.currentWidget() is wizard
     assert wizard.visit is not None
     assert wizard.visit.patient.details.code == SECRET_CODE
@@ -480,12 +482,7 @@ def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_w
 def test_escape_in_the_wizard_reaches_the_step_that_is_in_sight(
     qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
-    wizard = window.wizard
-    assert wizard is not None
+    window, wizard = in_a_visit(qtbot, open_window, folder)
     received: list[Intent] = []
     monkeypatch.setattr(wizard, "act_on", received.append)
     QTest.keyClick(window, Qt.Key.Key_Escape)
@@ -493,12 +490,7 @@ def test_escape_in_the_wizard_reaches_the_step_that_is_in_sight(
 
 
 def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
-    wizard = window.wizard
-    assert wizard is not None
+    window, wizard = in_a_visit(qtbot, open_window, folder)
     visit = wizard.visit
     wizard.settings_required.emit()
     assert window.screens.currentWidget() is window.home
@@ -698,19 +690,6 @@ def test_light_and_dark_follow_what_is_set(window: MainWindow, settings: Setting
     assert current_theme().colours is DARK
     settings.scheme = Scheme.LIGHT
     assert current_theme().colours is LIGHT
-
-
-def is_cut(widget: QWidget) -> bool:
-    """Return whether a widget has less room than its words need."""
-    if isinstance(widget, QLabel):
-        room = widget.size().shrunkBy(widget.contentsMargins())
-        flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
-        needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
-        return needed.width() > room.width() or needed.height() > room.height()
-    if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
-        need = widget.minimumSizeHint()
-        return need.width() > widget.width() or need.height() > widget.height()
-    return False
 
 
 def test_the_window_states_what_it_is_for(open_window: Open) -> None:

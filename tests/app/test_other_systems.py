@@ -74,7 +74,7 @@ def test_one_program_holds_a_file_on_windows_and_others_still_read_all_of_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     locks = Msvcrt()
-    monkeypatch.setitem(sys.modules, "msvcrt", locks)
+    monkeypatch.setattr(files, "msvcrt", locks, raising=False)
     (tmp_path / "lock").write_bytes(b"abc")
     with files.held(tmp_path / "lock"):
         assert locks.held_at[0] > (tmp_path / "lock").stat().st_size  # beyond all that is read
@@ -258,7 +258,7 @@ def test_the_viewer_keeps_its_settings_with_us_on_each_system(
     writing = ModuleType("app.review.rerun_log")
     vars(writing)["write_log"] = lambda *_: None
     monkeypatch.setitem(sys.modules, "app.review.rerun_log", writing)
-    monkeypatch.setitem(sys.modules, "msvcrt", Msvcrt())
+    monkeypatch.setattr(files, "msvcrt", Msvcrt(), raising=False)
     monkeypatch.setattr(subprocess, "Popen", start)
     monkeypatch.setenv("DISPLAY", ":0")
     monkeypatch.setattr(sys, "platform", platform)
@@ -288,7 +288,7 @@ def test_windows_plays_sounds_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     played: Queue[tuple[str, int]] = Queue()
     winsound = ModuleType("winsound")
     vars(winsound).update(SND_FILENAME=1, SND_NODEFAULT=2, PlaySound=lambda file, flags: played.put((file, flags)))
-    monkeypatch.setitem(sys.modules, "winsound", winsound)
+    monkeypatch.setattr("app.system.sounds.winsound", winsound, raising=False)
     Loudspeaker(()).play(Sound.START)
     file, flags = played.get(timeout=20)
     assert file.endswith("start.wav")

@@ -5,7 +5,6 @@
 Prints one line per condition and quantity: 50th, 90th percentile and worst over sessions, beside the target.
 """
 
-import argparse
 from collections import defaultdict
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
@@ -35,6 +34,7 @@ from devices.simulation.walker import (
     WalkerSettings,
     simulate,
 )
+from tests.driver import options
 
 Errors = dict[str, list[float]]
 
@@ -203,12 +203,7 @@ def run(name: str, seeds: range, workers: int) -> dict[str, np.ndarray]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--only", nargs="*", default=list(CONDITIONS))
-    arguments = parser.parse_args()
+    arguments = options(__doc__, seeds=20, first=0, workers=2, only={"nargs": "*", "default": list(CONDITIONS)})
     for name in arguments.only:
         pooled = run(name, range(arguments.first, arguments.first + arguments.seeds), arguments.workers)
         print(f"\n{name} ({arguments.seeds} sessions)")

@@ -8,7 +8,6 @@ motion, where the axes in use are so far from the true one. Neither asks the gat
 gated, of the sound joints under 3 %.
 """
 
-import argparse
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
@@ -36,6 +35,7 @@ from devices.simulation.walker import (
 )
 from devices.simulation.walker_truth import JointTruth
 from tests.benchmarks.cuts import cut
+from tests.driver import options
 
 JUMP_DEG = 25.0
 LOOSE = (Tissue.REAL,)  # without tissue the axes of an ankle are steady, if not its own
@@ -157,11 +157,7 @@ def lines(pool: ProcessPoolExecutor, seeds: range) -> Iterator[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--workers", type=int, default=1)
-    required = parser.parse_args()
+    required = options(__doc__, seeds=20, first=0, workers=1)
     with ProcessPoolExecutor(required.workers) as pool:
         for one in lines(pool, range(required.first, required.first + required.seeds)):
             print(one, flush=True)

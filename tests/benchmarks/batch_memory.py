@@ -8,7 +8,6 @@ Prints the resident memory of each, and of the processes that read the files, as
 now and then, so their memory rises and falls: reported is the most of the first quarter, and of the last.
 """
 
-import argparse
 import os
 import tempfile
 from collections import defaultdict
@@ -22,6 +21,7 @@ from app.cohort.batch.sources import SessionFolders
 from app.cohort.batch.spread import Workers
 from core.results import Method
 from tests.benchmarks.batch_material import write_walks
+from tests.driver import options
 
 WORKERS, LINES = 2, 100
 
@@ -74,11 +74,7 @@ def children_of_all() -> dict[int, list[int]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sessions", type=int, default=1000)
-    parser.add_argument("--strides", type=int, default=12)
-    parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
-    required = parser.parse_args()
+    required = options(__doc__, sessions=1000, strides=12, bare=(False, "without report.pdf and session.rrd"))
     choices = AnalysisChoices(Method.ROBUST, 2.0, not required.bare, not required.bare)
     executor = ProcessExecutor(WORKERS, PRELOADED)
     with tempfile.TemporaryDirectory() as place:

@@ -6,7 +6,6 @@ One worker and two take turns on the same sessions, simulated walks with free mo
 then the median. 1.6 is required on two cores.
 """
 
-import argparse
 import os
 import statistics
 import subprocess
@@ -16,6 +15,7 @@ from pathlib import Path
 from time import perf_counter
 
 from tests.benchmarks.batch_material import write_walks
+from tests.driver import options
 
 
 def took_s(folder: Path, out: Path, workers: int, more: list[str]) -> float:
@@ -26,14 +26,15 @@ def took_s(folder: Path, out: Path, workers: int, more: list[str]) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sessions", type=int, default=72)
-    parser.add_argument("--strides", type=int, default=40)
-    parser.add_argument("--walks", type=int, default=3)
-    parser.add_argument("--pairs", type=int, default=5)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        sessions=72,
+        strides=40,
+        walks=3,
+        pairs=5,
+        workers=2,
+        bare=(False, "without report.pdf and session.rrd"),
+    )
     more, ratios = ["--no-report", "--no-rrd"] if required.bare else [], []
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "in"

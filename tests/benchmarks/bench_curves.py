@@ -8,7 +8,6 @@ been read back, until it is analysed, until the bench with its curves is painted
 time of this process. Time before Stop runs `--speed` times as fast.
 """
 
-import argparse
 import os
 import tempfile
 from collections.abc import Callable
@@ -25,11 +24,6 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.plots.compared_chart import ComparedChart
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -39,6 +33,8 @@ from core.body import LEG_SITES, Side
 from core.session import Patient, RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import FreeMotion, ProsthesisSetting, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.driver import options
+from tests.quick_library import quick_library
 
 PASSPHRASE = "four short words here"
 PATIENCE_S = 60.0
@@ -143,20 +139,13 @@ def walked(step: WalkingStep, visit: Visit, painted: Painted, speed: float) -> t
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--walks", type=int, default=6)
-    parser.add_argument("--speed", type=float, default=4.0)
-    required = parser.parse_args()
+    required = options(__doc__, walks=6, speed=4.0)
     application = QApplication([])
     load_fonts()
     with tempfile.TemporaryDirectory() as folder:
-        slots = KeySlots(Path(folder) / KEYS, Cost(passes=1, memory_kib=64))
-        data_key, recovery_key = slots.create("hk", PASSPHRASE)
-        slots.confirm_recovery_key(recovery_key)
-        with Library.create(Path(folder), data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)):
-            pass
+        quick_library(Path(folder), PASSPHRASE).library.close()
         controller = LibraryController()
-        controller.open(Path(folder), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(folder), PASSPHRASE))
         wait(lambda: controller.state is not None)
         visit = dressed(controller, patient(required.walks, required.speed))
         calibrate(visit, required.speed)

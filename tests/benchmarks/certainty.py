@@ -6,7 +6,6 @@ One line per tissue, wearer, kind of joint and kind of recording: share of sampl
 removing the mean, pooled (90 to 100 % required) and in the worst session, and the standard deviation over the error.
 """
 
-import argparse
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -17,6 +16,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.session import Patient
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.driver import options
 
 SETTINGS = {
     "free motion, walk": WalkerSettings(recordings=(Standing(), FreeMotion(), Walk(strides=12))),
@@ -73,10 +73,7 @@ def _kind(joint: Joint, is_hinge: bool) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=12)
-    parser.add_argument("--first", type=int, default=0)
-    arguments = parser.parse_args()
+    arguments = options(__doc__, seeds=12, first=0)
     for name, (tissue, turn_rad) in TISSUES.items():
         for worn in WORN if tissue is not Tissue.REAL else ("person", "prosthesis"):
             if worn == "with play" and tissue is not Tissue.RIGID:

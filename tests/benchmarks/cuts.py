@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.samples import ImuBlock
 from core.session import Recording, RecordingKind, Session
+from tests.core.cut_blocks import part_of
 
 NAMES = "ABCDEF"
 
@@ -22,13 +22,8 @@ def cut(session: Session, parts: int) -> Session:
         edges_s = np.linspace(first_s, last_s, parts + 1)
         for letter, from_s, to_s in zip(NAMES, edges_s[:-1], edges_s[1:], strict=False):
             name = f"{recording.name} {letter}"
-            imu = {site: between(block, from_s, to_s) for site, block in recording.imu.items()}
+            imu = {site: part_of(block, from_s, to_s) for site, block in recording.imu.items()}
             recordings.append(
                 replace(recording, name=name, folder=name.replace(" ", "_"), imu=imu, condition=letter, left_out_s={})
             )
     return replace(session, recordings=tuple(recordings))
-
-
-def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    """The samples stamped from..to."""
-    return block.select(slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist()))

@@ -9,7 +9,6 @@ then, without the processes that record and analyse. "Held up" is how often, and
 thread was.
 """
 
-import argparse
 import os
 import statistics
 import subprocess
@@ -20,6 +19,7 @@ from time import monotonic, process_time
 
 from app.theme.current import load_fonts
 from tests.benchmarks.own_display import own_display, own_environment
+from tests.driver import options
 
 CODES = ("DEMO-KNEE", "DEMO-STROKE", "DEMO-AK")
 INSIDE = "from tests.benchmarks.demonstration import measure; measure(is_prepared={})"
@@ -77,9 +77,7 @@ def measure(*, is_prepared: bool) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--times", type=int, default=3)
-    times = parser.parse_args().times
+    times = options(__doc__, times=3).times
     print(f"load {os.getloadavg()[0]:.0f} on {os.cpu_count()} processors; medians, s")
     print("| pressed | home | " + " | ".join(CODES) + " | at work | held up |\n|" + "---|" * (4 + len(CODES)))
     with own_display() as display, own_environment(display) as environment:

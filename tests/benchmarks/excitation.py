@@ -11,7 +11,6 @@ error lies within twice the predicted standard deviation, floors included, how o
 calibration then reported what the gauge had promised.
 """
 
-import argparse
 import os
 import sys
 from collections import defaultdict
@@ -43,6 +42,7 @@ from devices.simulation.walker import (
     simulate,
 )
 from tests.benchmarks.scoring import line_error_deg
+from tests.driver import options
 
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
@@ -256,12 +256,13 @@ def draw(reported: list[Stopped], path: Path) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--sessions", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--picture", type=Path)
-    parser.add_argument("--misses", action="store_true", help="print every calibration that is not covered")
-    arguments = parser.parse_args()
+    arguments = options(
+        __doc__,
+        sessions=500,
+        first=0,
+        picture={"type": Path},
+        misses=(False, "print every calibration that is not covered"),
+    )
     reported = [
         one
         for seed in range(arguments.first, arguments.first + arguments.sessions)

@@ -18,7 +18,6 @@ the estimator's updates, of the screen's slot and paint, and of a whole frame of
 drawn, is measured and added. It is what a processor that is free would show, and no measurement of one.
 """
 
-import argparse
 import math
 import sys
 import tempfile
@@ -58,6 +57,7 @@ from core.targets import Target, TargetMeasure
 from devices.simulation.replay import POLL_S, ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.benchmarks.live_road import stood
+from tests.driver import options
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 
 RATE_HZ = 200.0
@@ -315,10 +315,9 @@ def _quantiles(values_s: list[float]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=25.0, help="of each measure")
-    parser.add_argument("--computed", action="store_true", help="in a time of its own, for a machine that is busy")
-    required = parser.parse_args()
+    required = options(
+        __doc__, seconds=(25.0, "of each measure"), computed=(False, "in a time of its own, for a machine that is busy")
+    )
     (compute if required.computed else run)(required.seconds)
 
 

@@ -5,7 +5,6 @@
 Simulated walks against their truth; after a stroke, without a reference, from contact and to toe-off.
 """
 
-import argparse
 import os
 from collections import defaultdict
 from pathlib import Path
@@ -18,6 +17,7 @@ from core.samples import FloatArray
 from devices.simulation.walker import PEOPLE, FootTruth, Manner, Standing, Tissue, Treadmill, Walk, WalkerSettings
 from tests.benchmarks.gait_simulated import walks_of
 from tests.core.gait.test_stroke_walks import COUNTED, events_of
+from tests.driver import options
 
 EVENTS = ("full_contact_s", "heel_rise_s")
 SPEEDS_M_S = (0.3, 0.5, 0.8)
@@ -48,9 +48,7 @@ def late_s(found: FootEvents, truth: FootTruth, event: str) -> FloatArray:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=3)
-    seeds = parser.parse_args().seeds
+    seeds = options(__doc__, seeds=3).seeds
     sd_ms: dict[str, list[float]] = defaultdict(list)
     for manner in Manner:
         for speed_m_s in SPEEDS_M_S:

@@ -6,7 +6,6 @@ The optical recordings are used where GAITWRIGHT_TEST_DATA names the shared fold
 foot_scoring.py. CPU seconds of one core, for a minute of the walker, by turns.
 """
 
-import argparse
 import csv
 import os
 import sys
@@ -24,10 +23,7 @@ from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.events import gait_of
 from core.gait.strides import strides_of
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
-from core.signal.orientation import oriented
-from core.signal.pair import OrientedTrack
-from core.signal.tracks import even_tracks
+from core.samples import BoolArray, FloatArray, ImuBlock
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.foot_scoring import (
     EventScore,
@@ -42,6 +38,8 @@ from tests.benchmarks.foot_scoring import (
 )
 from tests.benchmarks.peers.gaitmap_feet import GaitmapFeet
 from tests.benchmarks.speed import ONE_CORE, machine
+from tests.core.gait.feet import foot_of
+from tests.driver import options
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 NO_BIAS = np.zeros(3)
@@ -62,11 +60,6 @@ GAITMAP_AFTER = {
     "stride by stride, RtsKalman": "BarthDtw|stride, RtsKalman",
     "in one piece, RtsKalman": "BarthDtw|region, RtsKalman",
 }
-
-
-def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
-    (track,) = even_tracks(block)
-    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
 
 
 def without_bias(block: ImuBlock, standing: ImuBlock) -> ImuBlock:
@@ -283,9 +276,7 @@ def peers_gaitmap(stack: ExitStack) -> GaitmapFeet | None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--repeats", type=int, default=7, help="turns of the speed comparison")
-    repeats = parser.parse_args().repeats
+    repeats = options(__doc__, repeats=(7, "turns of the speed comparison")).repeats
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     with ExitStack() as stack:
         gaitmap = peers_gaitmap(stack)

@@ -8,7 +8,6 @@ count as found or not; their errors stand apart, as the worst of all ("ends"). T
 used less the mean of the true ones, in percent of it. What misses its target carries an asterisk.
 """
 
-import argparse
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -20,11 +19,11 @@ from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.spatiotemporal import both_feet, parameters_of
 from core.gait.strides import Strides, strides_of
-from core.samples import FloatArray, ImuBlock, RateKind
-from core.signal.orientation import oriented
+from core.samples import FloatArray
 from core.signal.pair import OrientedTrack
-from core.signal.tracks import even_tracks
 from devices.simulation.walker import FootTruth, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.core.gait.feet import foot_of
+from tests.driver import options
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 EVENTS = {"IC": "initial_contact_s", "FC": "full_contact_s", "HR": "heel_rise_s", "TO": "toe_off_s"}
@@ -79,11 +78,6 @@ class Score:
             short += [] if abs(mean_s) <= phase_mean_s and sd_s <= phase_sd_s else [name]
         short += [name for name in TIMES if not abs(self.mean_percent(name)) <= TIME_PERCENT]
         return short + ([] if abs(self.mean_percent(LENGTH)) <= LENGTH_PERCENT else [LENGTH])
-
-
-def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
-    (track,) = even_tracks(block)
-    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
 
 
 def walks_of(settings: WalkerSettings) -> dict[Side, tuple[OrientedTrack, FootTruth]]:
@@ -203,13 +197,14 @@ HEADER = " | ".join(
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=2)
-    parser.add_argument("--gaits", nargs="+", default=list(GAITS), choices=GAITS)
-    parser.add_argument("--tissues", nargs="+", default=list(Tissue), type=Tissue)
-    parser.add_argument("--speeds", nargs="+", default=SPEEDS_M_S, type=float)
-    parser.add_argument("--rates", nargs="+", default=RATES_HZ, type=float)
-    asked = parser.parse_args()
+    asked = options(
+        __doc__,
+        seeds=2,
+        gaits={"nargs": "+", "default": list(GAITS), "choices": GAITS},
+        tissues={"nargs": "+", "default": list(Tissue), "type": Tissue},
+        speeds={"nargs": "+", "default": SPEEDS_M_S, "type": float},
+        rates={"nargs": "+", "default": RATES_HZ, "type": float},
+    )
     print(HEADER)
     for gait in asked.gaits:
         for tissue in asked.tissues:

@@ -9,13 +9,12 @@ work": the processor time of the screen's thread meanwhile. To compare two versi
 PYTHONPATH.
 """
 
-import argparse
 import os
 import statistics
 import tempfile
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from time import perf_counter, sleep, thread_time
+from time import perf_counter, thread_time
 
 from app.theme.current import load_fonts
 
@@ -26,25 +25,24 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.home.home import Home
-from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
 from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit
+from tests.driver import options
+from tests.quick_library import quick_library
+from tests.safety.window_material import wait
 
 SEARCHED = "P-012"
 WITH_COURSES = 40
-LONGEST_S = 300.0
+wait_until = partial(wait, patience_s=300.0, every_s=0.0005)  # what is measured takes milliseconds
 
 
 def make_library(folder: Path, patients: int) -> None:
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
     courses = [course_of_visit(number) for number in (3, 4)]
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+    with quick_library(folder, PASSPHRASE) as opened:
+        library = opened.library
         for number in range(patients):
             one = Patient(code=f"P-{number:04d}", birth_year=1940 + number % 60, affected_side="left")
             patient = library.patients.create(one)
@@ -55,31 +53,20 @@ def make_library(folder: Path, patients: int) -> None:
                 library.sessions.create(patient.id, Session((), started=f"2026-01-{1 + number % 28:02d}T09:00:00"))
 
 
-def wait_until(application: QApplication, is_so: Callable[[], bool]) -> None:
-    until_s = perf_counter() + LONGEST_S
-    while not is_so():
-        application.processEvents()
-        sleep(0.0005)
-        if perf_counter() > until_s:
-            raise TimeoutError
-
-
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--patients", type=int, default=2000)
-    parser.add_argument("--times", type=int, default=5)
-    parser.add_argument("--library", type=Path, help="made there if it is empty, and kept")
-    options = parser.parse_args()
+    asked = options(
+        __doc__, patients=2000, times=5, library={"type": Path, "help": "made there if it is empty, and kept"}
+    )
     application = QApplication([])
     application.setStyle("Fusion")
     load_fonts()
     with tempfile.TemporaryDirectory() as temporary:
-        folder = options.library or Path(temporary) / "library"
+        folder = asked.library or Path(temporary) / "library"
         folder.mkdir(exist_ok=True)
         if not (folder / KEYS).exists():
-            make_library(folder, options.patients)
+            make_library(folder, asked.patients)
         controller = LibraryController()
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
         wait_until(application, lambda: controller.state is not None)
         state = controller.state
         assert state is not None
@@ -90,7 +77,7 @@ def main() -> None:
         home.resize(1280, 800)
         home.show()
         page, rows = home.page, []
-        for _ in range(options.times + 1):  # the first one fills caches
+        for _ in range(asked.times + 1):  # the first one fills caches
             began_s, worked_s = perf_counter(), thread_time()
             home.show_library(state)
             wait_until(application, lambda: bool(page.patients.lines))

@@ -8,7 +8,6 @@ largest change of that difference from one sample to the next (a jump), and how 
 the same by half-seconds from the start on, for walks that begin in standing and for walks cut open.
 """
 
-import argparse
 import os
 from collections import defaultdict
 from collections.abc import Iterator
@@ -27,6 +26,7 @@ from core.samples import FloatArray, ImuBlock, RateKind
 from core.session import Recording, RecordingKind, Session
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.trials import HINGES
+from tests.driver import options
 
 SCORED_FROM_S = 3.0
 CUT_S = (3.3, 4.6, 6.1)  # instants amid the walk
@@ -210,11 +210,7 @@ def run_mechanical(folder: Path) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--sessions", type=int, default=25)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--only", nargs="*", default=list(CONDITIONS))
-    required = parser.parse_args()
+    required = options(__doc__, sessions=25, first=0, only={"nargs": "*", "default": list(CONDITIONS)})
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     if reported:
         run_mechanical(Path(reported))

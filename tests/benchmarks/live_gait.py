@@ -11,7 +11,6 @@ instead: legs that hang from a pelvis, half turns on arcs and on the balls of th
 tissues, beside the truth and beside the whole walk; and people after a stroke.
 """
 
-import argparse
 import os
 import time
 from collections import defaultdict
@@ -32,6 +31,7 @@ from core.signal.pair import OrientedTrack
 from core.signal.tracks import even_tracks
 from devices.files.session_folder import read_session
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.driver import options
 
 SITES = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 SPEEDS_M_S = (0.3, 0.5, 0.8, 1.19, 1.6, 2.0)
@@ -205,11 +205,12 @@ def show_row(name: str, true: Score | None, whole: Score) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=2)
-    parser.add_argument("--axis", action="store_true", help="give the pitch axis")
-    parser.add_argument("--turns", type=int, metavar="SEEDS", help="the table of contacts in turns instead")
-    args = parser.parse_args()
+    args = options(
+        __doc__,
+        seeds=2,
+        axis=(False, "give the pitch axis"),
+        turns={"type": int, "metavar": "SEEDS", "help": "the table of contacts in turns instead"},
+    )
     if args.turns:
         show_turns(args.turns)
         return

@@ -9,7 +9,6 @@ read; of walking that of the angles, which wait for the samples around them. A f
 Python on a thread of its own, due 30 times a second as the screen's are: when it is done.
 """
 
-import argparse
 import tempfile
 import threading
 import time
@@ -34,6 +33,7 @@ from core.samples import FloatArray, ImuBlock
 from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.driver import options
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 
 RATE_HZ = 200.0
@@ -183,9 +183,7 @@ def unplaced(sensors: Mapping[str, LiveSensor], standing: Mapping[str, FloatArra
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=30.0, help="of each estimator")
-    run(parser.parse_args().seconds)
+    run(options(__doc__, seconds=(30.0, "of each estimator")).seconds)
 
 
 if __name__ == "__main__":

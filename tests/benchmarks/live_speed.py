@@ -9,7 +9,6 @@ and straps, and the free motion with excitation and lags. VQF (doi 10.1016/j.inf
 one filter per sensor, which the estimator needs anyway. The two take turns, minute by minute.
 """
 
-import argparse
 import resource
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -30,6 +29,8 @@ from core.samples import ImuBlock
 from core.session import Session
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.core.cut_blocks import part_of
+from tests.driver import options
 
 RATE_HZ = 200.0
 BLOCK_S = 0.033
@@ -59,11 +60,6 @@ def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float = BLOCK_S) -> Blocks:
     end_s = max(float(block.time_s[-1]) for block in imu.values())
     edges = np.arange(0.0, end_s + block_s, block_s)
     return [{site: part_of(block, a, b) for site, block in imu.items()} for a, b in pairwise(edges)]
-
-
-def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]))
-    return ImuBlock(block.sensor, block.time_s[part], block.gyr_rad_s[part], block.acc_m_s2[part])
 
 
 def later(blocks: Blocks, by_s: float) -> Iterator[dict[Site, ImuBlock]]:
@@ -166,11 +162,12 @@ def long_stream(hours: float) -> Iterator[tuple[float, int]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=int, default=3, help="of each stage")
-    parser.add_argument("--hours", type=float, help="of one stream, instead")
-    parser.add_argument("--seven", action="store_true", help="with a sensor on the pelvis, instead")
-    asked = parser.parse_args()
+    asked = options(
+        __doc__,
+        minutes=(3, "of each stage"),
+        hours={"type": float, "help": "of one stream, instead"},
+        seven=(False, "with a sensor on the pelvis, instead"),
+    )
     if asked.seven:
         compare_seven(asked.minutes)
         return

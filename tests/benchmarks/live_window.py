@@ -34,6 +34,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tests.benchmarks.own_display import own_display, own_environment
+from tests.driver import HIDDEN, options
 
 if TYPE_CHECKING:
     from app.main_window import MainWindow
@@ -148,10 +149,10 @@ def _session(
     yield lambda: wizard.step_id is StepId.FREE_MOTION
     free = wizard.steps[StepId.FREE_MOTION]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard.step_id is StepId.WALKING or free.labels._side.asked is not None
+    yield lambda: wizard.step_id is StepId.WALKING or free.question.asked is not None
     if wizard.step_id is StepId.FREE_MOTION:
         yield _after(PAUSE_S)
-        free.page.answered.emit(0)
+        free.page.question.answered.emit(0)
     yield lambda: wizard.step_id is StepId.WALKING
     yield lambda: not visit.evaluation.is_busy
     yield _after(PAUSE_S)
@@ -384,14 +385,15 @@ def _quantiles(values_s: "np.ndarray[Any, Any]", which: tuple[float, ...]) -> li
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rate", type=float, default=100.0, help="of each sensor, Hz")
-    parser.add_argument("--size", type=int, nargs=2, default=(1280, 800), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--seconds", type=float, default=60.0, help="of the walk")
-    parser.add_argument("--curves", type=int, choices=[0, 18], default=0)
-    parser.add_argument("--analyses", action="store_true")
-    parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        rate=(100.0, "of each sensor, Hz"),
+        size={"type": int, "nargs": 2, "default": (1280, 800), "metavar": ("WIDTH", "HEIGHT")},
+        seconds=(60.0, "of the walk"),
+        curves={"type": int, "choices": [0, 18], "default": 0},
+        analyses=False,
+        inside=(False, HIDDEN),
+    )
     if required.inside:
         print(json.dumps(lead(required)))
         return

@@ -6,7 +6,6 @@ Writes a session of six sensors at 100 Hz, one simulated minute of walking state
 `gaitwright analyse` on it in a process of its own. Ten hours need 8 GB of disk for a while.
 """
 
-import argparse
 import os
 import subprocess
 import sys
@@ -21,6 +20,7 @@ import numpy as np
 from core.samples import ImuBlock
 from devices.files.session_folder import write_session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from tests.driver import options
 
 ROOT = Path(__file__).parents[2]
 STRIDES = 54  # about a minute
@@ -46,13 +46,7 @@ def repeated(block: ImuBlock, duration_s: float) -> ImuBlock:
 
 
 def analyse_apart(session: Path, out: Path) -> tuple[float, float]:
-    """CPU seconds and the highest memory (GiB) of the command.
-
-    Raises
-    ------
-    RuntimeError
-        It failed.
-    """
+    """CPU seconds and the highest memory (GiB) of the command."""
     command = [sys.executable, "-m", "app", *ANALYSE, str(session), "--out", str(out)]
     with tempfile.TemporaryFile(mode="w+") as stated:
         process = subprocess.Popen(command, cwd=ROOT, stdout=stated, stderr=stated)
@@ -79,10 +73,11 @@ def run(hours: Sequence[float], place: Path | None) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--hours", type=float, nargs="+", default=[0.25, 1.0])
-    parser.add_argument("--place", type=Path, help="where the sessions are written (the system's temporary folder)")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        hours={"type": float, "nargs": "+", "default": [0.25, 1.0]},
+        place={"type": Path, "help": "where the sessions are written (the system's temporary folder)"},
+    )
     run(required.hours, required.place)
 
 

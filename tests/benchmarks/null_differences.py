@@ -9,7 +9,6 @@ and tissue of its own, a day has its gait. Required: at most 5 % of the judged r
 the sessions with any sentence on page one.
 """
 
-import argparse
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -44,6 +43,7 @@ from devices.simulation.walker import (
     simulate,
 )
 from tests.benchmarks.cuts import cut
+from tests.driver import options
 
 STRIDES = 45  # thirds have ten and more used
 WALK = 23  # of a pair: 20 strides used
@@ -217,12 +217,7 @@ def _percent(part: int, whole: int) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--walks", type=int, default=200)
-    parser.add_argument("--parts", type=int, nargs="*", default=[2, 3])
-    parser.add_argument("--pairs", type=int, default=60)
-    parser.add_argument("--workers", type=int, default=1)
-    required = parser.parse_args()
+    required = options(__doc__, walks=200, parts={"type": int, "nargs": "*", "default": [2, 3]}, pairs=60, workers=1)
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     print(f"{'walks':34} {'judged':>6} {'larger':>6}")
     with ProcessPoolExecutor(required.workers) as pool:

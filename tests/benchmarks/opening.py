@@ -8,16 +8,14 @@ program's life, and the median and the longest of those after; once with nothing
 and once from the analysis that is kept. Each with the processor time that it took.
 """
 
-import argparse
 import os
 import statistics
 import sys
 import tempfile
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from time import perf_counter, process_time, sleep
+from time import perf_counter, process_time
 from typing import NamedTuple
 from uuid import UUID
 
@@ -27,12 +25,8 @@ from PySide6.QtCore import QEvent, QObject, QSettings
 from PySide6.QtWidgets import QApplication, QStackedWidget, QWidget
 
 from app.storage.exchange import import_session
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.opened import OpenedLibrary, open_library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
+from app.storage.opened import OpenedLibrary
+from app.storage.stored import Role
 from app.system.settings import Settings
 from app.theme.current import load_fonts, set_theme
 from app.theme.theme import Theme
@@ -40,10 +34,13 @@ from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, simulate
+from tests.driver import options
+from tests.quick_library import quick_library
+from tests.safety.window_material import wait
 
 PASSPHRASE = "four short words here"
 WALKS = 3
-LONGEST_S = 60.0
+wait_until = partial(wait, patience_s=60.0, every_s=0.0005)  # what is measured takes milliseconds
 
 
 class Opening(NamedTuple):
@@ -73,19 +70,8 @@ def three_walks() -> Session:
 
 def library_with(session: Session, folder: Path) -> UUID:
     """Make an encrypted library that holds the session."""
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)).close()
-    with open_library(folder, PASSPHRASE) as opened:
+    with quick_library(folder, PASSPHRASE) as opened:
         return import_session(opened, session, lambda _share, _what: None, "DEMO-1").session_id
-
-
-def wait_until(application: QApplication, is_so: Callable[[], bool]) -> None:
-    until_s = perf_counter() + LONGEST_S
-    while not is_so():
-        application.processEvents()
-        sleep(0.0005)
-        if perf_counter() > until_s:
-            raise TimeoutError
 
 
 def opened_once(application: QApplication, wizard: Wizard, session_id: UUID) -> Opening:
@@ -132,16 +118,14 @@ def _results(wizard: Wizard) -> QWidget | None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--times", type=int, default=10)
-    times = parser.parse_args().times
+    times = options(__doc__, times=10).times
     application = QApplication(sys.argv[:1])
     load_fonts()
     set_theme(Theme())
     controller = LibraryController()
     with tempfile.TemporaryDirectory(prefix="gaitwright-") as folder:
         session_id = library_with(three_walks(), Path(folder))
-        controller.open(Path(folder), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(folder), PASSPHRASE))
         wait_until(application, lambda: controller.state is not None)
         settings = Settings(QSettings(str(Path(folder) / "settings.ini"), QSettings.Format.IniFormat))
         wizard = Wizard(controller, settings)

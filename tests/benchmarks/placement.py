@@ -10,7 +10,6 @@ wrong ones called certain, right ones called uncertain, and the margin. One line
 though right, and swapped on purpose but not named, or not rightly.
 """
 
-import argparse
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
@@ -26,6 +25,7 @@ from core.samples import FloatArray, RateKind
 from core.session import RecordingKind, Session
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import FreeMotion, Motion, SensorErrors, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.driver import options
 
 MAX_LATE_S = 0.03
 POOR_SENSORS = SensorErrors(gyro_bias_sd_rad_s=np.deg2rad(1.5), acc_bias_sd_m_s2=0.1)
@@ -189,10 +189,11 @@ def report(condition: str, seeds: range) -> Iterator[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=200, help="patients per condition")
-    parser.add_argument("--only", nargs="*", default=list(CONDITIONS), choices=list(CONDITIONS), metavar="CONDITION")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        seeds=(200, "patients per condition"),
+        only={"nargs": "*", "default": list(CONDITIONS), "choices": list(CONDITIONS), "metavar": "CONDITION"},
+    )
     for condition in required.only:
         for line in report(condition, range(required.seeds)):
             print(line, flush=True)

@@ -8,7 +8,6 @@ sessions are whole: a simulated patient walks twice, the second time with a chan
 through the analysis.
 """
 
-import argparse
 import math
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -27,6 +26,7 @@ from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS, ComparisonKind, sigma_of
 from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from devices.simulation.walker_body import GaitChange
+from tests.driver import options
 
 STRIDES = 20
 CORRELATION = 0.3
@@ -180,12 +180,7 @@ def whole_session(seed: int, change: str, tissue: Tissue) -> Outcome:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--draws", type=int, default=2000)
-    parser.add_argument("--sessions", type=int, default=40)
-    parser.add_argument("--tissue", type=Tissue, default=Tissue.SOFT)
-    parser.add_argument("--workers", type=int, default=1)
-    required = parser.parse_args()
+    required = options(__doc__, draws=2000, sessions=40, tissue={"type": Tissue, "default": Tissue.SOFT}, workers=1)
     if required.draws:
         print(*table(required.draws), sep="\n")
     with ProcessPoolExecutor(required.workers) as pool:

@@ -6,7 +6,6 @@ A table as a batch writes it (two walks, both legs and both together: 600 000 ro
 question is asked from opening the file to the last figure; pandas reads only the columns that it needs.
 """
 
-import argparse
 import os
 import sys
 import tempfile
@@ -24,6 +23,7 @@ import pyarrow.parquet as pq
 from app.cohort.study.groups import Grouping, GroupQuestion, answer
 from app.cohort.study.parameter_table import ParameterTable
 from core.verdicts.quantities import PARAMETERS
+from tests.driver import options
 
 MEASURE = "knee_range_deg"
 REQUIRED_S, CLOSE = 1.0, 1e-9
@@ -107,11 +107,9 @@ def seconds(work: Callable[[], object], repeats: int) -> float:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--sessions", type=int, default=100_000)
-    parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--table", type=Path, help="a folder to keep the table in")
-    required = parser.parse_args()
+    required = options(
+        __doc__, sessions=100_000, repeats=5, table={"type": Path, "help": "a folder to keep the table in"}
+    )
     with tempfile.TemporaryDirectory() as temporary:
         path = (required.table or Path(temporary)) / f"questions-{required.sessions}.parquet"
         if not path.exists():

@@ -5,13 +5,13 @@
 One line per tissue and sample rate: sessions of instants called averaged, sessions of averages called instants.
 """
 
-import argparse
 from dataclasses import replace
 
 from core.calibration.rate_kind import tracks_of_kind
 from core.samples import RateKind
 from core.session import Session
 from devices.simulation.walker import Tissue, WalkerSettings, simulate
+from tests.driver import options
 
 RATES_HZ = (60.0, 100.0, 200.0)
 
@@ -30,9 +30,7 @@ def is_mistaken(settings: WalkerSettings) -> bool:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=12)
-    seeds = range(parser.parse_args().seeds)
+    seeds = range(options(__doc__, seeds=12).seeds)
     for tissue in Tissue:
         for rate_hz in RATES_HZ:
             wrong = {

@@ -7,7 +7,6 @@ and between attachments a known factor of the published sigma, alike in all colu
 Required: the true figure is within the limits in 95 of 100 clinics.
 """
 
-import argparse
 import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -23,6 +22,7 @@ from core.verdicts.own_figures import PUBLISHED_SIGMAS
 from core.verdicts.repeatability import COLUMNS, Strapping, repeatability_of
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS
 from core.verdicts.stride_means import mean_of_strides
+from tests.driver import options
 
 CORRELATION = 0.3
 BETWEEN_PEOPLE = 0.06  # of a mean
@@ -116,11 +116,7 @@ def coverage(
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--clinics", type=int, default=200)
-    parser.add_argument("--people", type=int, default=20)
-    parser.add_argument("--strides", type=int, default=20, help="of each leg in each attachment")
-    args = parser.parse_args()
+    args = options(__doc__, clinics=200, people=20, strides=(20, "of each leg in each attachment"))
     found = coverage(COLUMNS, args.clinics, args.people, args.strides)
     for name, share in found.items():
         print(f"{name:50} {100 * share:5.1f} %")

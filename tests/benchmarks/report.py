@@ -3,7 +3,6 @@
 python -m tests.benchmarks.report [--repeats 5]
 """
 
-import argparse
 import time
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -16,6 +15,7 @@ from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.analysis import analyse
 from core.session import RecordingKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.driver import options
 
 PREVIEW_PPI = 80.0  # of a page beside the words in a window of 1280 x 800
 
@@ -30,9 +30,7 @@ def visit_of(walks: int) -> AnalysedVisit:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--repeats", type=int, default=5)
-    repeats = parser.parse_args().repeats
+    repeats = options(__doc__, repeats=5).repeats
     for walks in (1, 3):
         visit = visit_of(walks)
         request = ReportRequest(visit, default_walks(visit), datetime.now(UTC), "0")

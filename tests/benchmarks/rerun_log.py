@@ -6,7 +6,6 @@ Six sensors at 100 Hz, one simulated minute of walking stated over and over. The
 then every sample and every angle is read back from it and compared.
 """
 
-import argparse
 import subprocess
 import sys
 import tempfile
@@ -25,6 +24,7 @@ from core.samples import FloatArray
 from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.long import STRIDES, repeated
+from tests.driver import options
 
 ROUNDING_S = 1.5e-9  # a timeline ticks in nanoseconds
 
@@ -75,10 +75,7 @@ def _are_equal(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, Floa
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, default=10.0)
-    parser.add_argument("--repeats", type=int, default=3)
-    required = parser.parse_args()
+    required = options(__doc__, minutes=10.0, repeats=3)
     session = session_of(required.minutes)
     analysis = analyse(session)
     with tempfile.TemporaryDirectory() as folder:

@@ -6,7 +6,6 @@ CPU seconds of one core. The methods take turns on every recording; ratios are t
 The result is printed and kept at the end of tests/benchmarks/README.md.
 """
 
-import argparse
 import os
 import platform
 import sys
@@ -35,6 +34,7 @@ from tests.benchmarks.peers import vqf_angle
 from tests.benchmarks.peers.qmt_axes import QmtAxes
 from tests.benchmarks.scoring import Estimate, Score, score
 from tests.benchmarks.trials import Trial, hinge_trials, simulated_trials
+from tests.driver import options
 
 ONE_CORE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 LONG_MINUTES = 6.0
@@ -226,10 +226,9 @@ def machine() -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=3, help="simulated sessions per condition")
-    parser.add_argument("--repeats", type=int, default=5, help="turns of every method on every recording")
-    required = parser.parse_args()
+    required = options(
+        __doc__, seeds=(3, "simulated sessions per condition"), repeats=(5, "turns of every method on every recording")
+    )
     trials = [*simulated_trials(range(required.seeds)), *hinge_trials()]
     if all(trial.truth.is_clock_shared for trial in trials):
         print("GAITWRIGHT_TEST_DATA is not set: the mechanical hinge is excluded.", file=sys.stderr)

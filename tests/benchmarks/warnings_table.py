@@ -8,7 +8,6 @@ that GAITWRIGHT_TEST_DATA names are analysed beside, without saying what is true
 is added to the file as it is done, and what the file holds is not done again.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -41,6 +40,7 @@ from devices.simulation.walker import (
     simulate,
 )
 from tests.benchmarks.warning_cases import CASES
+from tests.driver import options
 
 Value = TypeVar("Value")
 MAX_FALSE_PERCENT = 2.0
@@ -220,13 +220,14 @@ def _keys(row: Mapping[str, object]) -> set[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="How often does each finding come where it must not?")
-    parser.add_argument("--sessions", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--results", type=Path)
-    parser.add_argument("--table-only", action="store_true", help="print what the results hold")
-    reported = parser.parse_args()
+    reported = options(
+        "How often does each finding come where it must not?",
+        sessions=500,
+        first=0,
+        workers=2,
+        results={"type": Path},
+        table_only=(False, "print what the results hold"),
+    )
     rows: list[dict[str, object]] = []
     if reported.results and reported.results.exists():
         rows = [json.loads(line) for line in reported.results.read_text(encoding="utf-8").splitlines()]

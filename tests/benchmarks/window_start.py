@@ -8,7 +8,6 @@ start, and for one who has a library, who logs in. "At work" is the processor ti
 programs make the time longer, but hardly this.
 """
 
-import argparse
 import statistics
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from collections.abc import Mapping
 from time import monotonic, process_time
 
 from tests.benchmarks.own_display import own_display, own_environment
+from tests.driver import options
 
 INSIDE = "from tests.benchmarks.window_start import start; start()"
 
@@ -63,7 +63,7 @@ def started(environment: Mapping[str, str]) -> tuple[float, float]:
 
 def make_library(environment: Mapping[str, str]) -> None:
     code = (
-        "from pathlib import Path; from app.cli.library import default_folder; "
+        "from pathlib import Path; from app.storage.layout import default_folder; "
         "from app.storage.opened import create_library; from app.storage.stored import Operator, Role; "
         "someone = Operator('AB', 'A. B.', Role.ADMINISTRATOR); "
         "create_library(default_folder(), someone, 'long enough a phrase')[0].library.close()"
@@ -72,9 +72,7 @@ def make_library(environment: Mapping[str, str]) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--times", type=int, default=9)
-    times = parser.parse_args().times
+    times = options(__doc__, times=9).times
     print("| who | shown after, s: least, median, most | at work, s: least, median, most |\n|---|---|---|")
     with own_display() as display, own_environment(display) as environment:
         for who in ("a new user", "a user with a library"):

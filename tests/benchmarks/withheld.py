@@ -5,7 +5,6 @@
 Required: at most 5 % of the joints of healthy simulated walks, walks without free motion included.
 """
 
-import argparse
 import os
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -19,6 +18,7 @@ from core.session import RecordingKind, Session
 from core.verdicts.model import Assessment
 from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.null_differences import real_walks
+from tests.driver import options
 
 WALK = Walk(strides=16)
 MOTIONS = {
@@ -74,10 +74,7 @@ def lines(name: str, found: Iterable[Stated]) -> Iterator[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--workers", type=int, default=1)
-    required = parser.parse_args()
+    required = options(__doc__, seeds=20, workers=1)
     print("| walks | part | n | read | care | withheld | gates |")
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     if reported:

@@ -16,7 +16,8 @@ from core.results import Analysis, JointCalibration, Method, ZeroKind
 from core.samples import FloatArray, ImuBlock
 from core.session import Patient, RecordingKind, Session
 from core.signal.rotations import angle_between, joint_frame
-from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import session_of
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -300,5 +301,5 @@ def test_the_same_session_gives_the_same_numbers(leg_visit: Session) -> None:
 def test_several_walks_that_calibrate_themselves_are_analysed() -> None:
     """Each half of what all hold has none of some walks, and so nothing to filter of them."""
     walks = (Walk("walk 1", strides=5), Walk("walk 2", strides=5))
-    session = simulate(WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Standing(), *walks))).session
+    session = session_of(WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Standing(), *walks)))
     assert [recording.name for recording in analyse(session).recordings][-2:] == ["walk 1", "walk 2"]

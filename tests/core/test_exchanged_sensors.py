@@ -19,8 +19,9 @@ from core.session import Session
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import Track
 from core.verdicts.model import Verdict
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.benchmarks.placement import swapped
+from tests.simulated import simulation_of
 
 LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 
@@ -29,7 +30,7 @@ LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 def worn() -> Session:
     """The left leg's three sensors, standing, moving freely and walking."""
     recordings = (Standing(), FreeMotion(duration_s=6.0), Walk(strides=8))
-    made = simulate(WalkerSettings(seed=4, sites=LEFT_LEG, recordings=recordings))
+    made = simulation_of(WalkerSettings(seed=4, sites=LEFT_LEG, recordings=recordings))
     return made.session
 
 

@@ -12,8 +12,9 @@ from core.body import LEG_SITES, Side
 from core.results import Analysis
 from core.samples import ImuBlock
 from core.session import Session
-from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
 from tests.core.recorded_joints import recorded_people
+from tests.simulated import session_of
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 
@@ -21,7 +22,7 @@ LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 def rested(tissue: Tissue, seed: int) -> Session:
     """Two short walks in one recording, with half a minute of standing between them."""
     settings = WalkerSettings(seed, (Standing(), Walk(strides=3, standing_after_s=30.0)), LEFT, tissue)
-    session = simulate(settings).session
+    session = session_of(settings)
     walk = session.recordings[-1]
     imu = {site: twice(block) for site, block in walk.imu.items()}
     return replace(session, recordings=(*session.recordings[:-1], replace(walk, imu=imu)))

@@ -15,7 +15,9 @@ from core.results import Analysis, Method, ZeroKind
 from core.samples import FloatArray, ImuBlock
 from core.session import Recording, RecordingKind, Session
 from core.signal.rotations import angle_between
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.core.cut_blocks import Change, changed
+from tests.simulated import simulation_of
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -23,16 +25,7 @@ if TYPE_CHECKING:
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 KNEE = Joint.LEFT_KNEE
-Change = Callable[[ImuBlock], ImuBlock]
 methods = pytest.mark.parametrize("method", list(Method))
-
-
-def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
-    recordings = []
-    for r in session.recordings:
-        imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
-        recordings.append(replace(r, imu=imu))
-    return replace(session, recordings=tuple(recordings))
 
 
 def with_value(value: float, signal: str = "gyr_rad_s", at: int = 150) -> Change:
@@ -225,7 +218,7 @@ def test_one_gap_does_not_spoil_the_rest_of_a_walk(rows: int) -> None:
     stated but `gaps`. 50 ms: 0.1 deg; 310 ms, where a new stretch begins: 0.1 deg. Interpolated rates across a step
     turn the sensor by what they miss, and headings and drift, linear between knots 10 s apart, cannot step. Mend: let
     them step at every gap over 50 ms (knots of its own for each side), or bridge no more than 50 to 60 ms."""
-    walked = simulate(
+    walked = simulation_of(
         WalkerSettings(seed=1, recordings=(Standing(), FreeMotion(), Walk(strides=5)), sites=(THIGH, SHANK))
     )
     (truth,) = walked.truth.recordings["walk 1"].joints.values()
@@ -256,7 +249,7 @@ def test_what_lost_samples_cost_is_within_two_deviations(seed: int) -> None:
         sites=(THIGH, SHANK, FOOT),
         loss_fraction=0.02,
     )
-    walked = simulate(settings)
+    walked = simulation_of(settings)
     found = analyse(walked.session).recordings[-1]
     for joint, truth in walked.truth.recordings["walk 1"].joints.items():
         expected = np.interp(found.time_s, truth.time_s, truth.angle_rad - truth.standing_rad)

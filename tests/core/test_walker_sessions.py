@@ -10,7 +10,8 @@ from core.body import LEG_SITES, Joint, Side, Site
 from core.results import Analysis
 from core.samples import FloatArray, RateKind, SensorInfo
 from core.session import Session
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import session_of, simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -57,7 +58,7 @@ def without_word(session: Session) -> Session:
     ids=["plain", "60 Hz", "200 Hz", "jitter", "late", "averaged", "walk only"],
 )
 def test_a_rigid_leg_is_measured_whatever_the_sensors_do(settings: WalkerSettings) -> None:
-    walked = simulate(settings)
+    walked = simulation_of(settings)
     found = analyse(walked.session)
     for joint in (KNEE, ANKLE):
         assert rms_deg(error_rad(walked, found, joint)) < 0.8
@@ -66,11 +67,11 @@ def test_a_rigid_leg_is_measured_whatever_the_sensors_do(settings: WalkerSetting
 
 @pytest.mark.endurance
 def test_averaged_rates_are_found_where_no_sensor_shows() -> None:
-    walked = simulate(left_leg(rate_kind=RateKind.AVERAGED))
+    walked = simulation_of(left_leg(rate_kind=RateKind.AVERAGED))
     found = analyse(without_word(walked.session))
     assert "rate_kind_found" in {f.key for f in found.findings}
     assert rms_deg(error_rad(walked, found, KNEE)) < 0.8
-    instants = analyse(without_word(simulate(left_leg()).session))
+    instants = analyse(without_word(session_of(left_leg())))
     assert "rate_kind_found" not in {f.key for f in instants.findings}
 
 
@@ -79,7 +80,7 @@ def test_averaged_rates_are_found_where_no_sensor_shows() -> None:
 def test_on_soft_tissue_the_sign_is_right_and_two_deviations_hold_nine_samples_of_ten(
     tissue: Tissue, seed: int
 ) -> None:
-    walked = simulate(left_leg(seed=seed, tissue=tissue))
+    walked = simulation_of(left_leg(seed=seed, tissue=tissue))
     found = analyse(walked.session)
     for joint in (KNEE, ANKLE):
         error, angle = error_rad(walked, found, joint), found.recordings[-1].joints[joint]
@@ -92,7 +93,7 @@ def test_on_soft_tissue_the_sign_is_right_and_two_deviations_hold_nine_samples_o
 
 
 def test_a_stiff_knee_is_right_or_uncertain() -> None:
-    walked = simulate(left_leg(stiff_knee_side=Side.LEFT))
+    walked = simulation_of(left_leg(stiff_knee_side=Side.LEFT))
     found = analyse(walked.session)
     calibration = found.calibrations[0].joints[KNEE]
     truth = walked.truth.recordings[found.recordings[-1].name].joints[KNEE]
@@ -101,14 +102,14 @@ def test_a_stiff_knee_is_right_or_uncertain() -> None:
 
 
 def test_lags_are_found_on_both_sides_of_a_late_shank() -> None:
-    found = analyse(simulate(left_leg(clock_late_s={Site.LEFT_SHANK: 0.03})).session)
+    found = analyse(session_of(left_leg(clock_late_s={Site.LEFT_SHANK: 0.03})))
     joints = found.calibrations[0].joints
     assert joints[KNEE].lag_s == pytest.approx(-0.03, abs=0.0015)
     assert joints[ANKLE].lag_s == pytest.approx(0.03, abs=0.0015)
 
 
 def test_new_straps_are_a_new_calibration() -> None:
-    walked = simulate(
+    walked = simulation_of(
         left_leg(
             recordings=(
                 Standing(),
@@ -126,7 +127,7 @@ def test_new_straps_are_a_new_calibration() -> None:
 
 
 def test_a_clock_that_is_late_in_one_walk_only_is_corrected_and_reported() -> None:
-    walked = simulate(WalkerSettings(seed=3))
+    walked = simulation_of(WalkerSettings(seed=3))
     standing, free, walk = walked.session.recordings
     late = {s: replace(b, time_s=b.time_s + 0.03) if s is Site.LEFT_SHANK else b for s, b in walk.imu.items()}
     found = analyse(replace(walked.session, recordings=(standing, free, replace(walk, imu=late))))
@@ -140,6 +141,6 @@ def test_a_clock_that_is_late_in_one_walk_only_is_corrected_and_reported() -> No
 def test_sensors_on_loose_tissue_agree_about_a_knee_nearly_as_those_on_people() -> None:
     """Worn by people they disagree about the joint's force by 8 to 13 % of what they feel."""
     settings = WalkerSettings(recordings=(Standing(), Walk(strides=12)), tissue=Tissue.REAL)
-    found = analyse(simulate(settings).session).calibrations[0].joints
+    found = analyse(session_of(settings)).calibrations[0].joints
     apart = [found[joint].disagreement or 0.0 for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE)]
     assert 0.08 < np.mean(apart) < 0.19

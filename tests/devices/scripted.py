@@ -1,9 +1,13 @@
-"""A channel that states what a test has written down, and notes what it is reported."""
+"""A channel that states what a test has written down and notes what it is reported; what a source gives in seconds."""
 
+import socket
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
 
+from core.samples import ImuBlock
 from devices.live import SourceLostError
+from devices.stream import ByteSource
 
 
 class ScriptedChannel:
@@ -45,3 +49,20 @@ class SilentVoice:
 
     def hear(self, data: bytes) -> bytes:
         return b""
+
+
+def received_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
+    """The samples of so many seconds, and the bytes that were kept of them."""
+    blocks: list[ImuBlock] = []
+    kept: list[bytes] = []
+    until_s = time.monotonic() + seconds
+    while time.monotonic() < until_s:
+        blocks += source.read(kept.append)
+    return blocks, kept
+
+
+def free_port() -> int:
+    """One of UDP, on this computer."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

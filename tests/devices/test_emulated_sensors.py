@@ -15,7 +15,8 @@ from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
 from devices.simulation.replay import ReplaySource
-from devices.simulation.walker import Standing, WalkerSettings, simulate
+from devices.simulation.walker import Standing, WalkerSettings
+from tests.simulated import session_of
 
 
 def motion(number: int) -> tuple[float, ...]:
@@ -156,7 +157,7 @@ def test_a_sensor_that_is_played_again_is_reported_and_shaken() -> None:
     def sleep(seconds: float) -> None:
         clock.now_s += seconds
 
-    session = simulate(WalkerSettings(recordings=(Standing(),))).session
+    session = session_of(WalkerSettings(recordings=(Standing(),)))
     source = ReplaySource(session, now_ns=clock, sleep=sleep)
     source.open()
     reported = source.details()

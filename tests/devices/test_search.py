@@ -23,17 +23,11 @@ from devices.live import SourceRefusedError
 from devices.search import announcement, search, search_streams
 from devices.transport import ports as ports_module
 from devices.transport.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
-from tests.devices.scripted import SilentVoice
+from tests.devices.scripted import SilentVoice, free_port
 
 
 def motion(number: int) -> tuple[float, ...]:
     return (number % 100, 0.0, 0.0, 0.0, 0.0, 1.0)
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture(autouse=True)

@@ -14,15 +14,14 @@ from devices.emulators.ximu3 import Ximu3Voice
 from devices.live import SourceLostError, SourceRefusedError
 from devices.stream import ByteSource
 from devices.transport.channels import UdpChannel
+from tests.devices.scripted import free_port
 
 RATE_HZ, LISTENS = 200, 25
 
 
 @pytest.fixture
 def port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    return free_port()
 
 
 @pytest.fixture

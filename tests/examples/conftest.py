@@ -6,7 +6,8 @@ import pytest
 
 from core.body import Site
 from devices.files.session_folder import write_session
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 
@@ -15,7 +16,7 @@ LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 def simulated() -> SimulatedSession:
     walk = Walk(strides=6, standing_before_s=3.0)  # long enough for a port to be opened meanwhile
     recordings = (Standing(duration_s=2.0), FreeMotion(duration_s=5.0), walk)
-    return simulate(WalkerSettings(seed=3, sites=LEFT_LEG, recordings=recordings))
+    return simulation_of(WalkerSettings(seed=3, sites=LEFT_LEG, recordings=recordings))
 
 
 @pytest.fixture(scope="session")

@@ -61,13 +61,7 @@ class BareRoot:
         return ["chroot", *user, str(self.folder), *clean, *kept, *inside]
 
     def run(self, *words: str, is_root: bool = False, most_s: float = 900.0) -> str:
-        """Run it to its end and give what it printed.
-
-        Raises
-        ------
-        RuntimeError
-            It failed, or took too long.
-        """
+        """Run it to its end and give what it printed."""
         try:
             done = subprocess.run(
                 self.command(*words, is_root=is_root),

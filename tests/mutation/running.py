@@ -185,13 +185,7 @@ class Tree:
                 importlib.import_module(library)
 
     def check(self, tests: Sequence[str]) -> None:
-        """See that all tests are there: a name that is not would look like a failure.
-
-        Raises
-        ------
-        LookupError
-            The code has changed since it was found out which tests run which lines.
-        """
+        """See that all tests are there: a name that is not would look like a failure."""
         (self._place / "wanted.txt").write_text("\n".join(tests), encoding="utf-8")
         command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", "@wanted.txt"]
         found = subprocess.run(

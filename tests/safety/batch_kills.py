@@ -12,39 +12,23 @@ import hashlib
 import os
 import random
 import signal
-import tempfile
 import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_a_cluster, of_this_computer
+from app.cohort.batch.cluster import of_a_cluster
+from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_this_computer
 from app.cohort.batch.spread import Workers, finished
+from app.system.progress import nobody
 from tests.app.batch_stand_ins import StandIn, digest_of
+from tests.driver import Found, drive
 
 WORKERS = 2
 PRELOADED_OF_BOTH = (*PRELOADED, "distributed.nanny")  # a killed worker of the cluster is back in no time, too
-
-
-@dataclass(slots=True)
-class BatchKills:
-    """What was done, how often it was killed, how long it took, and what is not as it should be."""
-
-    kills: dict[str, int] = field(default_factory=dict)
-    took_s: dict[str, float] = field(default_factory=dict)
-    hashes: dict[str, str] = field(default_factory=dict)
-    faults: list[str] = field(default_factory=list)
-
-    def lines(self) -> Iterator[str]:
-        for name, digest in self.hashes.items():
-            kills = f"{self.kills[name]} workers killed, " if name in self.kills else ""
-            yield f"{name}: {kills}{self.took_s[name]:.1f} s, {digest[:16]}"
-        yield f"{len(self.faults)} faults"
-        yield from (f"- {fault}" for fault in self.faults)
 
 
 class Killer:
@@ -121,8 +105,9 @@ def undisturbed() -> Iterator[tuple[Workers, None]]:
         yield workers, None
 
 
-def stand_ins(count: int, every_s: float, rounds: int, required: str, found: BatchKills) -> None:
+def stand_ins(count: int, every_s: float, rounds: int, required: str, found: Found) -> None:
     """Do so many numbers in three ways."""
+    hashes = set[str]()
     for name, some in ways(every_s, required).items():
         with some as (workers, killer):
             began_s = time.perf_counter()
@@ -136,11 +121,12 @@ def stand_ins(count: int, every_s: float, rounds: int, required: str, found: Bat
         if failed:
             why = {repr(result) for _, result in results if isinstance(result, Exception)}
             found.faults.append(f"{name}: {len(failed)} numbers failed: {sorted(why)[:3]}")
-        found.hashes[f"{count} stand-ins, {name}"] = hashlib.sha256(repr(sorted(results)).encode()).hexdigest()
-    compare(found)
+        hashes.add(hashlib.sha256(repr(sorted(results)).encode()).hexdigest())
+    if len(hashes) > 1:
+        found.faults.append(f"{count} stand-ins: the ways differ")
 
 
-def sessions(folder: Path, count: int, every_s: float, required: str, found: BatchKills) -> None:
+def sessions(folder: Path, count: int, every_s: float, required: str, found: Found) -> None:
     """Do so many sessions in three ways; each is another session."""
     # here, not above: each worker begins with this module, and is killed soon
     from app.cohort.batch.analysed_folder import AnalysisChoices
@@ -150,6 +136,7 @@ def sessions(folder: Path, count: int, every_s: float, required: str, found: Bat
     from core.results import Method
     from tests.app.batch_material import results_in, write_swinging
 
+    hashes = set[str]()
     choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
     write_swinging(folder / "in", count, most_patients=max(1, count // 3))
     for name, some in ways(every_s, required).items():
@@ -157,12 +144,13 @@ def sessions(folder: Path, count: int, every_s: float, required: str, found: Bat
         with some as (workers, killer), batch_at(out) as batch:
             began_s = time.perf_counter()
             work = Batch(SessionFolders(folder / "in", out), batch, choices)
-            work.run(workers, _nobody_looks)
+            work.run(workers, nobody)
             note(found, f"{count} sessions, {name}", began_s, killer)
         if (work.result.analysed, work.result.rows) != (count, 3 * count):
             found.faults.append(f"{name}: {work.result}")
-        found.hashes[f"{count} sessions, {name}"] = digest_in(results_in(out))
-    compare(found)
+        hashes.add(digest_in(results_in(out)))
+    if len(hashes) > 1:
+        found.faults.append(f"{count} sessions: the ways differ")
 
 
 def ways(every_s: float, required: str) -> dict[str, Any]:
@@ -170,17 +158,10 @@ def ways(every_s: float, required: str) -> dict[str, Any]:
     return {name: known[name] for name in required.split(",")}
 
 
-def note(found: BatchKills, name: str, began_s: float, killer: Killer | None) -> None:
-    found.took_s[name] = time.perf_counter() - began_s
+def note(found: Found, name: str, began_s: float, killer: Killer | None) -> None:
+    found.figures[f"{name}, s"].append(time.perf_counter() - began_s)
     if killer is not None:
-        found.kills[name] = killer.kills
-
-
-def compare(found: BatchKills) -> None:
-    by_kind: dict[str, set[str]] = {}
-    for name, digest in found.hashes.items():
-        by_kind.setdefault(name.rpartition(",")[0], set()).add(digest)
-    found.faults += [f"{kind}: the ways differ" for kind, digests in by_kind.items() if len(digests) > 1]
+        found.count[f"workers killed of {name}"] = killer.kills
 
 
 def digest_in(files: Mapping[str, bytes]) -> str:
@@ -191,26 +172,22 @@ def digest_in(files: Mapping[str, bytes]) -> str:
     return whole.hexdigest()
 
 
-def _nobody_looks(_share: float, _what: str) -> None:
-    """Report to nobody."""
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--stand-ins", type=int, default=100_000)
-    parser.add_argument("--rounds", type=int, default=500, help="of a stand-in: how much work each is")
-    parser.add_argument("--sessions", type=int, default=1000)
-    parser.add_argument("--ways", default="serial,pool,dask")
-    parser.add_argument("--every", type=float, default=5.0, metavar="S", help="between two kills")
-    required, found = parser.parse_args(), BatchKills()
-    if required.stand_ins:
-        stand_ins(required.stand_ins, required.every, required.rounds, required.ways, found)
-    if required.sessions:
-        with tempfile.TemporaryDirectory() as folder:
-            sessions(Path(folder), required.sessions, required.every, required.ways, found)
-    print(*found.lines(), sep="\n")
-    raise SystemExit(bool(found.faults))
+def run(asked: argparse.Namespace, folder: Path) -> Found:
+    found = Found()
+    if asked.stand_ins:
+        stand_ins(asked.stand_ins, asked.every, asked.rounds, asked.ways, found)
+    if asked.sessions:
+        sessions(folder, asked.sessions, asked.every, asked.ways, found)
+    return found
 
 
 if __name__ == "__main__":
-    main()
+    drive(
+        __doc__,
+        run,
+        stand_ins=100_000,
+        rounds=(500, "of a stand-in: how much work each is"),
+        sessions=1000,
+        ways="serial,pool,dask",
+        every=(5.0, "seconds between two kills"),
+    )

@@ -12,25 +12,15 @@ import time
 import zipfile
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from devices.files.formats import FORMATS
 from devices.files.limited_reader import LimitedReader, LimitedReading
 from devices.files.refusal import FileRefusedError
+from tests.driver import Found, drive
 
 MOST_S = 90.0  # a file that is read to its deadline and a start of the process
 HEAD = b"time_s,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,gyr_x_rad_s,gyr_y_rad_s,gyr_z_rad_s\n"
-
-
-@dataclass
-class Outcome:
-    """What came of every file in every parser."""
-
-    readings: int = 0
-    refused: int = 0
-    longest_s: float = 0.0
-    faults: list[str] = field(default_factory=list)
 
 
 def _laughs(levels: int, width: int) -> bytes:
@@ -117,9 +107,9 @@ def bombs() -> dict[str, bytes]:
     return files
 
 
-def run(formats: Callable[[str], bool] = lambda _: True) -> Outcome:
+def run(formats: Callable[[str], bool] = lambda _: True) -> Found:
     """Read every file as each format, and without being given which."""
-    outcome = Outcome()
+    outcome = Found()
     reader = LimitedReader()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -135,32 +125,22 @@ def run(formats: Callable[[str], bool] = lambda _: True) -> Outcome:
     return outcome
 
 
-def _read(reading: LimitedReading, path: Path, format_name: str, outcome: Outcome) -> None:
+def _read(reading: LimitedReading, path: Path, format_name: str, outcome: Found) -> None:
     began_s = time.monotonic()
-    outcome.readings += 1
+    outcome.count["readings"] += 1
     try:
         reading.read_trial(format_name, [path], 100.0)
     except FileRefusedError as refusal:
-        outcome.refused += 1
+        outcome.count["refused"] += 1
         if "\n" in str(refusal):
             outcome.faults.append(f"{path.name} as {format_name}: a refusal of several lines")
     except Exception as error:  # the fault that is looked for
         outcome.faults.append(f"{path.name} as {format_name}: {type(error).__name__} {error!s:.200}")
     took_s = time.monotonic() - began_s
-    outcome.longest_s = max(outcome.longest_s, took_s)
+    outcome.figures["time, s"].append(took_s)
     if took_s > MOST_S + path.stat().st_size / 5e6:
         outcome.faults.append(f"{path.name} as {format_name}: {took_s:.0f} s")
 
 
-def main() -> None:
-    outcome = run()
-    for fault in outcome.faults:
-        print(fault)
-    print(
-        f"{len(bombs())} files, {outcome.readings} readings: {outcome.refused} refused, the longest took "
-        f"{outcome.longest_s:.0f} s, {len(outcome.faults)} faults"
-    )
-
-
 if __name__ == "__main__":
-    main()
+    drive(__doc__, lambda _asked, _folder: run())

@@ -36,13 +36,7 @@ class BrokenControl:
     becomes: str
 
     def applied(self, source: str) -> str:
-        """The source without the control.
-
-        Raises
-        ------
-        LookupError
-            What is to be broken is not there once.
-        """
+        """The source without the control."""
         if source.count(self.find) != 1:
             raise LookupError(
                 f"{self.requirement}, {self.file}: {self.find!r} is there {source.count(self.find)} times"

@@ -22,6 +22,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system.progress import nobody
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.safety.journal_material import NO_ROOM_ASKED
 
@@ -32,10 +33,6 @@ PASSPHRASE = "four short words here"
 OPERATORS = ("hk", "ab")
 CODES = ("DEMO-1", "DEMO-2")
 Row = dict[str, Any]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 class OwnServer:
@@ -108,7 +105,7 @@ def make_library(folder: Path) -> None:
     with Library.create(folder, data_key, Operator(OPERATORS[0], "", Role.ADMINISTRATOR)) as library:
         library.operators.add(Operator(OPERATORS[1], "", Role.ADMINISTRATOR))
         for code in CODES:
-            import_session(OpenedLibrary(library, folder, data_key), walked, silent, code, room=NO_ROOM_ASKED)
+            import_session(OpenedLibrary(library, folder, data_key), walked, nobody, code, room=NO_ROOM_ASKED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +125,7 @@ def make_clinic(folder: Path, server: OwnServer) -> Clinic:
     make_library(stations[0])
     station = new_station(address, str(place))
     with open_library(stations[0], PASSPHRASE, OPERATORS[0], is_to_be_moved=True) as opened:
-        move_to_server(opened, station, silent)
+        move_to_server(opened, station, nobody)
     for other in stations[1:]:
         join(other, address, str(place))
     return Clinic(address, place, stations)

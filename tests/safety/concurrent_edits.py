@@ -13,15 +13,10 @@ import itertools
 import json
 import multiprocessing
 import random
-import shutil
-import sys
 import tempfile
-import time
-import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -33,6 +28,8 @@ from app.storage.library import Library
 from app.storage.stored import Change, Operator, Role
 from app.storage.three_way import Value, Values
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.driver import Found, drive
+from tests.safety.clinic_material import own_server
 
 DATA_KEY = bytes(range(32))
 STATIONS = ("aa", "bb")
@@ -53,17 +50,6 @@ class Thing:
 
     table: str
     id: UUID
-
-
-@dataclass(slots=True)
-class EditsJudged:
-    """What was counted, and what is wrong."""
-
-    acknowledged: int = 0
-    corrections: int = 0
-    contested: int = 0
-    merged: int = 0
-    faults: list[str] = field(default_factory=list)
 
 
 def open_station(url: str) -> Library:
@@ -160,9 +146,9 @@ def run_station(code: str, url: str, things: list[Thing], edits: int, seed: int,
     (out / f"{code}.json").write_text(json.dumps(station.log), encoding="utf-8")
 
 
-def judge(url: str, things: list[Thing], logs: Mapping[str, list[dict[str, Any]]]) -> EditsJudged:
+def judge(url: str, things: list[Thing], logs: Mapping[str, list[dict[str, Any]]]) -> Found:
     """Compare what both stations were reported with histories, rows, versions and audit."""
-    verdict = EditsJudged()
+    verdict = Found()
     with open_station(url) as library:
         library.log_in("hk")
         for patient in {thing.id for thing in things if thing.table == "patients"}:
@@ -170,23 +156,22 @@ def judge(url: str, things: list[Thing], logs: Mapping[str, list[dict[str, Any]]
         report = library.audit.verify()
         verdict.faults += [f"audit {fault.number}: {fault.what}" for fault in report.faults]
         noted = sum('"correction"' in entry.details for entry in library.audit.entries(last=MOST))
-        if noted != verdict.corrections:
-            verdict.faults.append(f"{noted} entries of the audit tell of {verdict.corrections} corrections")
-    verdict.contested = sum(bool(one.get("is_contested")) for log in logs.values() for one in log)
-    verdict.merged = sum(bool(one.get("is_merge")) for log in logs.values() for one in log)
+        if noted != verdict.count["corrections"]:
+            verdict.faults.append(f"{noted} entries of the audit tell of {verdict.count['corrections']} corrections")
+    verdict.count["contested"] = sum(bool(one.get("is_contested")) for log in logs.values() for one in log)
+    verdict.count["merged of the other's"] = sum(bool(one.get("is_merge")) for log in logs.values() for one in log)
     return verdict
 
 
 def _judge_patient(
-    library: Library, patient_id: UUID, logs: Mapping[str, list[dict[str, Any]]], verdict: EditsJudged
+    library: Library, patient_id: UUID, logs: Mapping[str, list[dict[str, Any]]], verdict: Found
 ) -> None:
-    everything = library.patients.everything(patient_id)
-    visits = everything.sessions
-    rows = {patient_id: everything.patient.version}
+    visits = [library.sessions.get(line.id) for line in library.sessions.list(patient_id)]
+    rows = {patient_id: library.patients.get(patient_id).version}
     rows |= {visit.id: visit.version for visit in visits}
     rows |= {walk.id: walk.version for visit in visits for walk in visit.recordings}
-    history = sorted(everything.corrections, key=lambda one: one.id)
-    verdict.corrections += len(history)
+    history = sorted(library.corrections.of_patient(patient_id), key=lambda one: one.id)
+    verdict.count["corrections"] += len(history)
     taken_back = {one.undoes for one in history} | {one.id for one in history if one.undoes}
     reported = {
         (code, one["row"], one["field"].partition(".")[0], json.dumps(one["said"])): one
@@ -216,7 +201,7 @@ def _judge_patient(
     for (operator, row, name, stated), _ in reported.items():
         if name == "left_out_s":
             continue
-        verdict.acknowledged += 1
+        verdict.count["values acknowledged"] += 1
         if (operator, name, json.loads(stated)) not in made:
             verdict.faults.append(f"{stated} of {operator} is not in the history of {row}")
     _judge_strides(library, rows, logs, verdict)
@@ -237,20 +222,20 @@ def _owner(change: Change, visits: Any) -> UUID:
 
 
 def _judge_strides(
-    library: Library, rows: Mapping[UUID, int], logs: Mapping[str, list[dict[str, Any]]], verdict: EditsJudged
+    library: Library, rows: Mapping[UUID, int], logs: Mapping[str, list[dict[str, Any]]], verdict: Found
 ) -> None:
     """No stride that anybody left out counts again: nobody has taken one in."""
     for log in logs.values():
         for one in log:
             if "row" in one and one["field"].startswith("left_out_s") and UUID(one["row"]) in rows:
-                verdict.acknowledged += 1
+                verdict.count["values acknowledged"] += 1
                 now = held(library, Thing("recordings", UUID(one["row"])))[one["field"]]
                 assert isinstance(now, tuple)
                 if not set(one["said"]) <= set(now):
                     verdict.faults.append(f"{one['row']}: {set(one['said']) - set(now)} s count again")
 
 
-def run(url: str, edits: int, seed: int = 1) -> EditsJudged:
+def run(url: str, edits: int, seed: int = 1) -> Found:
     """Let both stations edit, each `edits` times, and judge what came of it."""
     things = prepare(url)
     context = multiprocessing.get_context("spawn")
@@ -265,54 +250,25 @@ def run(url: str, edits: int, seed: int = 1) -> EditsJudged:
         for process in made:
             process.join()
         if any(process.exitcode for process in made):
-            return EditsJudged(faults=[f"stations ended with {[process.exitcode for process in made]}"])
+            return Found(faults=[f"stations ended with {[process.exitcode for process in made]}"])
         logs = {code: json.loads((out / f"{code}.json").read_text(encoding="utf-8")) for code in STATIONS}
     return judge(url, things, logs)
 
 
-@contextmanager
-def own_postgres() -> Iterator[str]:
-    """A PostgreSQL in a folder of its own, on a socket."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it minds that a machine without desktop has no folder for sockets
-        import pgserver
-    folder = Path(tempfile.mkdtemp(prefix="pg"))
-    server: Any = getattr(pgserver, "get_server")(folder, cleanup_mode="stop")  # noqa: B009  it has no types
-    try:
-        yield server.get_uri().replace("postgresql://", "postgresql+psycopg://", 1)
-    finally:
-        server.cleanup()
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-@contextmanager
-def own_file() -> Iterator[str]:
-    with tempfile.TemporaryDirectory() as folder:
-        yield folder
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--edits", type=int, default=500, help="of each station")
-    parser.add_argument("--seed", type=int, default=1)
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument("--url", help="an empty PostgreSQL database, as SQLAlchemy writes it, or an empty folder")
-    where.add_argument("--postgres", action="store_true", help="a PostgreSQL of its own")
-    asked = parser.parse_args()
-    began_s = time.monotonic()
-    if asked.url:
-        verdict = run(asked.url, asked.edits, asked.seed)
-    else:
-        with own_postgres() if asked.postgres else own_file() as url:
-            verdict = run(url, asked.edits, asked.seed)
-    print(
-        f"{2 * asked.edits} edits, {verdict.acknowledged} values acknowledged, {verdict.contested} contested, "
-        f"{verdict.merged} changes of the other merged, {verdict.corrections} corrections, "
-        f"{len(verdict.faults)} faults, {time.monotonic() - began_s:.0f} s"
-    )
-    print("\n".join(verdict.faults[:20]))
-    return 1 if verdict.faults else 0
+def run_at(asked: argparse.Namespace, folder: Path) -> Found:
+    if asked.postgres:
+        with own_server(folder / "pg") as server:
+            address = server.database().replace("postgresql://", "postgresql+psycopg://", 1)
+            return run(address, asked.edits, asked.seed)
+    return run(asked.url or str(folder), asked.edits, asked.seed)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(
+        __doc__,
+        run_at,
+        edits=(500, "of each station"),
+        seed=1,
+        url=("", "an empty PostgreSQL database, as SQLAlchemy writes it, or an empty folder"),
+        postgres=(False, "a PostgreSQL of its own"),
+    )

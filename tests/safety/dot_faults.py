@@ -11,12 +11,9 @@ With `--bumble` the links go through Bumble's virtual radio, which has advertise
 
 import argparse
 import random
-import sys
-import tempfile
 import traceback
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +32,7 @@ from devices.live import SourceLostError, SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.dot.worn_dots import RAD, Through, WornDots, behind_bleak, not_there
+from tests.driver import Found, drive
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
 
 TRIES = 12  # of a user who does what is stated
@@ -43,18 +41,6 @@ STAMPED_MS = 50.0  # the least latency of a link, which nobody can see, and what
 SHARED_MS = 2.0
 ORDERED_S = 1.0  # how long an order may take, and what is known of when it was done
 UTC_S = 1_700_000_000
-
-
-@dataclass(slots=True)
-class DotRuns:
-    """What came of all runs."""
-
-    seen: Counter[str] = field(default_factory=Counter)
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        reported = ", ".join(f"{count} {what}" for what, count in sorted(self.seen.items()))
-        return f"{len(self.faults)} faults; {reported}"
 
 
 def some_faults(rng: random.Random) -> DotFaults:
@@ -83,15 +69,15 @@ def some_faults(rng: random.Random) -> DotFaults:
     )
 
 
-def run_often(runs: int, seed: int, folder: Path, through: Through = behind_bleak) -> DotRuns:
+def run_often(runs: int, seed: int, folder: Path, through: Through = behind_bleak) -> Found:
     """So many runs, each reported by its number."""
-    every = DotRuns()
+    every = Found(Counter(runs=runs))
     for number in range(runs):
         rng, radio = random.Random(seed + number), VirtualRadio()
         try:
             place = folder / str(number)
             place.mkdir()
-            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen, through)]
+            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.count, through)]
         except Exception:  # what nobody was given to expect is a fault of this run
             every.faults.append(f"run {seed + number}: {traceback.format_exc()}")
         finally:
@@ -367,24 +353,20 @@ def _erased(
     return faults
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description="Emulated DOTs with faults.")
-    parser.add_argument("--runs", type=int, default=500)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--bumble", action="store_true", help="through Bumble's virtual radio")
-    required = parser.parse_args()
+def run(asked: argparse.Namespace, folder: Path) -> Found:
     through: Through = behind_bleak
-    if required.bumble:
+    if asked.bumble:
         from tests.devices.dot.by_bumble import by_bumble
 
         through = by_bumble
-    with tempfile.TemporaryDirectory() as folder:
-        every = run_often(required.runs, required.seed, Path(folder), through)
-    for fault in every.faults:
-        print(fault)
-    print(f"{required.runs} runs: {every}")
-    sys.exit(bool(every.faults))
+    return run_often(asked.runs, asked.seed, folder, through)
 
 
 if __name__ == "__main__":
-    main()
+    drive(
+        __doc__,
+        run,
+        runs=500,
+        seed=0,
+        bumble=(False, "through Bumble's virtual radio"),
+    )

@@ -8,7 +8,6 @@ in the sensors at 120 Hz and fetched, with three broken links of each sensor and
 The patient's motion, the sensors' clocks and what each took are the oracle.
 """
 
-import argparse
 import os
 import sys
 import tempfile
@@ -39,6 +38,7 @@ from devices.emulators.dot_patient import worn_air
 from devices.emulators.patient import FINE_HZ, EmulatedPatient
 from devices.transport.bluetooth import Radio
 from tests.devices.bumble_air import BumbleAir, BumbleRadio
+from tests.driver import options
 from tests.safety.ports_to_results import Outcome, WindowSession, lead, look, outcome_of
 
 KIND = "movella-dot"
@@ -166,12 +166,13 @@ def _taken(dot: EmulatedDot, site: Site) -> Mapping[str, FloatArray]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("--walks", type=int, default=1)
-    parser.add_argument("--memory", action="store_true", help="record walks in the sensors")
-    parser.add_argument("--bumble", action="store_true", help="through Bumble's virtual radio")
-    parser.add_argument("--shots", type=Path, metavar="FOLDER", help="write pictures of the window there")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        walks=1,
+        memory=(False, "record walks in the sensors"),
+        bumble=(False, "through Bumble's virtual radio"),
+        shots={"type": Path, "metavar": "FOLDER", "help": "write pictures of the window there"},
+    )
     application = QApplication([])
     application.setStyle("Fusion")
     load_fonts()

@@ -7,14 +7,13 @@ script, no file), and every number and every word that nobody typed is as in a r
 tables of the results no cell of a name may begin as a formula does.
 """
 
-import argparse
 import csv
 import io
 import json
 import random
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -28,6 +27,7 @@ from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.session import RecordingKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.driver import Found, drive
 
 MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=UTC)
 ALIVE = {"/Link", "/URI", "/Action", "/JavaScript", "/JS", "/Launch", "/AA", "/OpenAction", "/EmbeddedFile", "/Widget"}
@@ -57,22 +57,6 @@ SEEDS = (
 )
 LETTERS = [*range(0x20, 0x7F), *range(0xA0, 0x250), *range(0x300, 0x370), *range(0x590, 0x700)]
 LETTERS += [*range(0x2000, 0x2070), *range(0x1F600, 0x1F650), *range(0xE000, 0xE010), 0, 0x1B, 0xD800, 0xFFFF]
-
-
-@dataclass(slots=True)
-class Trial:
-    """`alive` in a PDF, `changed` beside what was typed, `formulas` in tables, each with its name."""
-
-    names: int = 0
-    alive: list[str] = field(default_factory=list)
-    changed: list[str] = field(default_factory=list)
-    formulas: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.names} names: {len(self.alive)} alive in the PDF, {len(self.changed)} changed another text, "
-            f"{len(self.formulas)} formulas in the tables"
-        )
 
 
 def names(count: int) -> Iterator[str]:
@@ -172,38 +156,29 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def try_names(count: int) -> Trial:
+def try_names(count: int) -> Found:
     """Make a report of each name, and of every tenth the results."""
-    plain_visit, trial = visit(), Trial()
+    plain_visit, trial = visit(), Found()
     expected_data = numbers_and_figures(report_data(named(plain_visit, PLAIN)))
     expected = texts(make_report(named(plain_visit, PLAIN)))
     for name in names(count):
-        trial.names += 1
+        trial.count["names"] += 1
         request = named(plain_visit, name)
+        where = f"{plain(name)[:80]!r} {name[:20]!r}"
         stated = json.dumps(numbers_and_figures(report_data(request)), ensure_ascii=False)
         if stated != json.dumps(expected_data, ensure_ascii=False):
-            trial.changed.append(name)
+            trial.faults.append(f"changed another text: {where}")
         pdf = make_report(request)
         if texts(pdf) != expected:
-            trial.changed.append(name)
+            trial.faults.append(f"changed another text: {where}")
         if alive_in(pdf):
-            trial.alive.append(name)
+            trial.faults.append(f"alive in the PDF: {where}")
         with tempfile.TemporaryDirectory() as folder:
             write_results(request.visit.session, request.visit.analysis, Path(folder))
             if formulas_in(Path(folder)):
-                trial.formulas.append(name)
+                trial.faults.append(f"a formula in a table: {where}")
     return trial
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=500)
-    trial = try_names(parser.parse_args().count)
-    print(trial)
-    for kind in ("alive", "changed", "formulas"):
-        for name in getattr(trial, kind)[:5]:
-            print(f"- {kind}: {plain(name)[:80]!r} {name[:20]!r}")
-
-
 if __name__ == "__main__":
-    main()
+    drive(__doc__, lambda asked, _: try_names(asked.count), count=500)

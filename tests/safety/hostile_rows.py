@@ -16,10 +16,9 @@ import logging
 import random
 import shutil
 import tempfile
-from collections import Counter
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -40,9 +39,11 @@ from app.storage.opened import logged_in, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.retention import destroy_overdue
 from app.storage.stored import LibraryError, RecordingState, StoredJournal
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
 from devices.files.refusal import FileRefusedError
-from tests.safety.clinic_material import PASSPHRASE, OwnServer, make_clinic, name_of, own_server, silent
+from tests.driver import Found, drive
+from tests.safety.clinic_material import PASSPHRASE, OwnServer, make_clinic, name_of, own_server
 from tests.safety.journal_material import LineDecoder, record_some
 
 SENTENCES = (LibraryError, JournalRefusedError, KeyRefusedError, FileRefusedError)
@@ -70,40 +71,6 @@ UUIDS = ("00000000-0000-0000-0000-000000000000", "ffffffff-ffff-ffff-ffff-ffffff
 REPORTED_EVERY = 500
 AT_ONCE = 8
 STEPS = 4  # of the honest station's work, before each of which rows may be changed
-
-
-@dataclass
-class Outcome:
-    """What came of all changes.
-
-    Attributes
-    ----------
-    refused
-        By the server, or there was no row.
-    sentences
-        Reported to the user of the honest station, or found in its audit.
-    same
-        That station read what it would have read without the change, nor with those that were made with it.
-    shown
-        It may have read the row as it is now, which is a value that each station may write.
-    days
-        How often the honest station worked.
-    """
-
-    changes: int = 0
-    refused: int = 0
-    sentences: int = 0
-    same: int = 0
-    shown: int = 0
-    days: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.changes} changes, of which {self.refused} refused by the server or of no row, {self.sentences} "
-            f"told in a sentence, {self.same} without effect, {self.shown} shown as they stand; {self.days} days of "
-            f"work, {len(self.faults)} faults"
-        )
 
 
 @dataclass(frozen=True)
@@ -162,7 +129,6 @@ def work(folder: Path, key: DataKey, read: Read) -> Generator[None]:
         yield
         for patient in (*library.patients.search(), *library.patients.search(is_deleted=True)):
             library.corrections.of_patient(patient.id)
-            library.patients.everything(patient.id)
             read["patient", patient.id] = patient.details
             if patient.deleted_at is None:
                 library.patients.change(patient, replace(patient.details, mass_kg=71.5))
@@ -172,7 +138,7 @@ def work(folder: Path, key: DataKey, read: Read) -> Generator[None]:
         for line in lines:
             visit = library.sessions.view(line.id)
             library.results.analysed_by("x")
-            whole = session_with_samples(opened, visit, {"lines": LineDecoder}, silent)
+            whole = session_with_samples(opened, visit, {"lines": LineDecoder}, nobody)
             stored = [one for one in visit.recordings if one.state in READ_BACK]
             for row, recording in zip(stored, whole.recordings, strict=True):
                 read.samples[row.id] = _digests(recording)
@@ -256,10 +222,10 @@ class Attack:
         except psycopg.Error:
             return False
 
-    def make(self, changes: Sequence[Change], at_step: int, outcome: Outcome) -> None:
+    def make(self, changes: Sequence[Change], at_step: int, outcome: Found) -> None:
         """Change rows before that step of the other station's work, put all back, and look closer where it stopped."""
         what = " and ".join(change.what for change in changes)
-        outcome.days += 1
+        outcome.count["days of work"] += 1
         is_reported = False
         try:
             read = self._read(changes, at_step)
@@ -272,9 +238,9 @@ class Attack:
                 if not samples <= self._recorded.get(recording, frozenset()):
                     outcome.faults.append(f"{what}: recording {recording} has samples that are not its own")
             if read == self._unchanged:
-                outcome.same += len(changes)
+                outcome.count["without effect"] += len(changes)
             else:
-                outcome.shown += len(changes)
+                outcome.count["shown as they stand"] += len(changes)
         if self._files() != self._before:
             outcome.faults.append(f"{what}: a file outside was touched")
         self._restore()
@@ -284,7 +250,7 @@ class Attack:
             self.make(changes[half:], at_step, outcome)
         elif is_reported:
             self.reported.add(what)
-            outcome.sentences += 1
+            outcome.count["told in a sentence"] += 1
 
     def _read(self, changes: Sequence[Change], at_step: int) -> Read:
         """What the honest station reads at its work, rows being changed before that step."""
@@ -354,9 +320,9 @@ def attack() -> Iterator[Attack]:
         yield Attack(Path(name), server)
 
 
-def run(changes: int, seed: int) -> Outcome:
+def run(changes: int, seed: int) -> Found:
     """Change each column in turn, and then columns at random."""
-    outcome, draw = Outcome(), random.Random(seed)
+    outcome, draw = Found(), random.Random(seed)
     waiting: list[Change] = []
     with attack() as attacked:
         for number in range(changes):
@@ -364,9 +330,9 @@ def run(changes: int, seed: int) -> Outcome:
                 print(outcome, *outcome.faults[-3:], sep="\n", flush=True)
             table, column = columns()[number] if number < len(columns()) else draw.choice(columns())
             change = attacked.draw_change(table, column, draw)
-            outcome.changes += 1
+            outcome.count["changes"] += 1
             if not attacked.takes(change):
-                outcome.refused += 1
+                outcome.count["refused by the server or of no row"] += 1
             elif change.what in attacked.reported:
                 attacked.make([change], draw.randrange(STEPS), outcome)
             else:
@@ -381,17 +347,10 @@ def _sql(text: str, *names: str) -> sql.Composed:
     return sql.SQL(text).format(*map(sql.Identifier, names))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--changes", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
-    args = parser.parse_args()
+def run_quietly(asked: argparse.Namespace, _: Path) -> Found:
     logging.disable(logging.CRITICAL)  # each row that cannot be read is logged
-    outcome = run(args.changes, args.seed)
-    for fault, count in Counter(outcome.faults).most_common():
-        print(f"{count} times {fault}")
-    print(outcome)
+    return run(asked.changes, asked.seed)
 
 
 if __name__ == "__main__":
-    main()
+    drive(__doc__, run_quietly, changes=1000, seed=1)

@@ -5,7 +5,6 @@
 A loop puts in what six sensors send in real time; what the same loop takes without a journal is taken off.
 """
 
-import argparse
 import tempfile
 import time
 from collections.abc import Callable
@@ -14,13 +13,12 @@ from pathlib import Path
 from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
+from tests.driver import options
 from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, RATE_HZ, WALKER, block
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=30.0)
-    seconds = parser.parse_args().seconds
+    seconds = options(__doc__, seconds=30.0).seconds
     for together in (4, 1):
         blocks, read = [block(name, 0, together) for name in NAMES], bytes(40 * together)
 

@@ -5,7 +5,6 @@
 The disk is a tmpfs where mounting is permitted; elsewhere the largest file that a process may write is set to 8 MB.
 """
 
-import argparse
 import contextlib
 import random
 import shutil
@@ -14,34 +13,17 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
-
-import numpy as np
 
 from app.storage.journal.disk import Room, Trouble
 from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter, State
 from devices.clocks.host_clock import host_time_ns
+from tests.driver import Found, drive
 from tests.safety.journal_material import ID, KEY, LINES, NO_ROOM_ASKED, read_all
 
 DISK_BYTES = 8_000_000
 PATIENCE_S = 30.0
-
-
-@dataclass(slots=True)
-class Fills:
-    """`stated_ms` after the last record that is kept was put in; `footers` of journals closed with one."""
-
-    stated_ms: list[float] = field(default_factory=list)
-    footers: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{len(self.stated_ms)} full disks, {len(self.faults)} journals at fault, {self.footers} with a footer; "
-            f"said after {np.median(self.stated_ms):.0f} ms (median), {max(self.stated_ms):.0f} ms (max)"
-        )
 
 
 def can_mount() -> bool:
@@ -78,9 +60,10 @@ def small_files(folder: str) -> Iterator[Path]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-def fill_often(count: int, seed: int) -> Fills:
-    rng, fills = random.Random(seed), Fills()
+def fill_often(count: int, seed: int) -> Found:
+    rng, fills = random.Random(seed), Found()
     is_disk = can_mount()
+    fills.count["disks" if is_disk else "files of 8 MB at most"] = count
     for k in range(count):
         with tempfile.TemporaryDirectory() as folder, (small_disk if is_disk else small_files)(folder) as disk:
             # every other one leaves what a recording has to leave free, where there is a disk to be looked at
@@ -91,7 +74,7 @@ def fill_often(count: int, seed: int) -> Fills:
     return fills
 
 
-def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Fills) -> str:
+def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Found) -> str:
     """Record some 30 MB/s until the journal states that it stopped; what is wrong with what is kept, if anything is."""
     stated: list[tuple[Trouble, int]] = []
     journal = JournalWriter.create(
@@ -109,13 +92,14 @@ def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Fills) -> str:
     summary = journal.stop()
     records, damages, report = read_all(summary.path, KEY)
     kept = [record for record in records if record.kind is RecordKind.BYTES]
-    fills.stated_ms.append((stated[0][1] - kept[-1].time_ns) / 1e6)
-    fills.footers += report.footer is not None
+    stopped_ms = (stated[0][1] - kept[-1].time_ns) / 1e6
+    fills.figures["reported after, ms"].append(stopped_ms)
+    fills.count["footers"] += report.footer is not None
     # a disk may be seen to be full to the last byte before it refuses one
     expected = (Trouble.NO_ROOM,) if room.kept_bytes else (Trouble.DISK_FULL, Trouble.NO_ROOM)
     wrong = {
         f"said {stated}": len(stated) != 1 or stated[0][0] not in expected,
-        f"said after {fills.stated_ms[-1]:.0f} ms": fills.stated_ms[-1] > 1000,
+        f"reported after {stopped_ms:.0f} ms": stopped_ms > 1000,
         f"damaged: {damages}": bool(damages),
         "not what was put in": [record.payload[2:] for record in kept]
         != [_piece(k, piece_bytes) for k in range(len(kept))],
@@ -132,15 +116,5 @@ def _piece(number: int, size: int) -> bytes:
     return number.to_bytes(8, "little") * (size // 8)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    reported = parser.parse_args()
-    print("an 8 MB tmpfs" if can_mount() else "files of 8 MB at most")
-    fills = fill_often(reported.count, reported.seed)
-    print(fills, *fills.faults, sep="\n")
-
-
 if __name__ == "__main__":
-    main()
+    drive(__doc__, lambda asked, _: fill_often(asked.count, asked.seed), count=200, seed=1)

@@ -8,13 +8,13 @@ Every synced record has to be found, every record that was not touched too, and 
 
 import argparse
 import random
-import tempfile
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.storage.journal.header import HEADER_BYTES, JournalRefusedError
 from app.storage.journal.records import CHECKSUM, RECORD_HEADER, Record
+from tests.driver import Found, drive
 from tests.safety.journal_material import KEY, OTHER_ID, read_all, record_some
 
 BLOCK = 512  # what a disk writes at once
@@ -44,23 +44,6 @@ class Original:
             ends.append(place)
         assert len(ends) == len(records)
         return cls(key, content, stranger, tuple(records), tuple(ends))
-
-
-@dataclass(slots=True)
-class Tails:
-    count: int = 0
-    synced: int = 0
-    lost: int = 0
-    untouched: int = 0
-    passed_over: int = 0
-    false: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.count} tails: of {self.synced} synced records {self.lost} lost, of {self.untouched} untouched ones "
-            f"after damage {self.passed_over} passed over, {self.false} false"
-        )
 
 
 Damaging = Callable[[bytearray, int, Original, random.Random], None]
@@ -128,8 +111,8 @@ def tail_blocks(content: bytearray, synced: int) -> list[slice]:
     return [slice(k, min(k + BLOCK, len(content))) for k in range(first, len(content), BLOCK)]
 
 
-def tear_often(folder: Path, count: int, seed: int) -> Tails:
-    rng, tails = random.Random(seed), Tails()
+def tear_often(folder: Path, count: int, seed: int) -> Found:
+    rng, tails = random.Random(seed), Found()
     originals = []
     for key in (KEY, None):
         place = folder / ("sealed" if key else "open")
@@ -146,7 +129,7 @@ def tear_often(folder: Path, count: int, seed: int) -> Tails:
     return tails
 
 
-def _judge(tails: Tails, original: Original, last: int, content: bytearray, path: Path, damage: Damaging) -> None:
+def _judge(tails: Found, original: Original, last: int, content: bytearray, path: Path, damage: Damaging) -> None:
     found, _, _ = read_all(path, original.key)
     untouched = []
     if damage in IN_PLACE:
@@ -160,10 +143,9 @@ def _judge(tails: Tails, original: Original, last: int, content: bytearray, path
     lost = len({*original.records[: last + 1]} - there)
     passed_over = len({*untouched} - there)
     false = len(there - {*original.records}) + len(found) - len(there)
-    tails.count += 1
-    tails.synced += last + 1
-    tails.untouched += len(untouched)
-    tails.lost, tails.passed_over, tails.false = tails.lost + lost, tails.passed_over + passed_over, tails.false + false
+    tails.count["tails"] += 1
+    tails.count["synced records"] += last + 1
+    tails.count["untouched records after damage"] += len(untouched)
     if lost or passed_over or false:
         tails.faults.append(f"{damage.__name__} after record {last}: {lost} lost, {passed_over} passed, {false} false")
 
@@ -187,20 +169,13 @@ def unnoticed_flips(folder: Path, count: int, seed: int, key: bytes | None) -> l
     return unnoticed
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--tails", type=int, default=20_000)
-    parser.add_argument("--flips", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    reported = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        tails = tear_often(Path(folder), reported.tails, reported.seed)
-        print(tails, *tails.faults, sep="\n")
-    for key in (KEY, None):
-        with tempfile.TemporaryDirectory() as folder:
-            unnoticed = unnoticed_flips(Path(folder), reported.flips, reported.seed, key)
-        print(f"{reported.flips} flipped bits in a {'sealed' if key else 'open'} journal: {len(unnoticed)} not noticed")
+def run(asked: argparse.Namespace, folder: Path) -> Iterator[tuple[str, Found]]:
+    yield "torn", tear_often(folder, asked.tails, asked.seed)
+    for key, name in ((KEY, "sealed"), (None, "open")):
+        (folder / f"{name} flipped").mkdir()
+        unnoticed = unnoticed_flips(folder / f"{name} flipped", asked.flips, asked.seed, key)
+        yield f"{name}, {asked.flips} bits flipped", Found(faults=[f"bit {bit} was not noticed" for bit in unnoticed])
 
 
 if __name__ == "__main__":
-    main()
+    drive(__doc__, run, tails=20_000, flips=10_000, seed=1)

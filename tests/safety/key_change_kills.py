@@ -5,13 +5,12 @@ at every file operation, and at random instants. Check that the library opens an
 python -m tests.safety.key_change_kills --count 100
 """
 
-import argparse
+import itertools
 import os
 import random
 import shutil
 import signal
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -23,31 +22,27 @@ from app.storage.journal_headers import write_headers
 from app.storage.key_change import change_data_key
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
-from app.storage.library import Library
-from app.storage.opened import OpenedLibrary, open_library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, RecordingState, Role, StoredJournal
+from app.storage.opened import open_library
+from app.storage.stored import RecordingState, StoredJournal
+from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.driver import KILLED, Found, drive, end_of_child
+from tests.quick_library import CHEAP, PASSPHRASE, quick_library
+from tests.safety.clinic_material import copy_of
 
-PASSPHRASE, LEAVING = "four short words here", "another four short words"
+LEAVING = "another four short words"
 EVENTS = ("open", "os.rename", "os.remove", "sqlite3.connect")
 JOURNALS = 5
 
 
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
-
-
 def make(folder: Path) -> None:
     """A library of two operators with a few recordings."""
-    folder.mkdir()
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
-    data_key, _ = slots.create("hk", PASSPHRASE)
-    slots.add(data_key, "ab", LEAVING)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+    with quick_library(folder) as opened:
+        library, data_key = opened.library, opened.data_key
+        assert data_key is not None
+        KeySlots(folder / KEYS, CHEAP).add(data_key, "ab", LEAVING)
         patient = library.patients.create(Patient(code="P-001"))
         visit = library.sessions.create(patient.id, Session((), started="2026-11-20T09:00:00"))
-        opened = OpenedLibrary(library, folder, data_key)
         for number in range(JOURNALS):
             reported = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
             row = library.recordings.start(visit.id, reported, is_simulated=False)
@@ -60,28 +55,20 @@ def make(folder: Path) -> None:
             library.recordings.close(row.id, RecordingState.CLOSED, {header.segment: summary.sha256})
 
 
-def kill_in_child(folder: Path, at_event: int, after_s: float) -> bool:
+def kill_in_child(folder: Path, at_event: int, after_s: float | None) -> bool:
     """Change the key in a child that is killed at its n-th file operation, or after a while; whether it was."""
-    if (child := os.fork()) == 0:
-        seen = 0
+    seen = itertools.count(1)
 
-        def kill(event: str, _arguments: object) -> None:
-            nonlocal seen
-            if event in EVENTS:
-                seen += 1
-                if seen == at_event:
-                    os.kill(os.getpid(), signal.SIGKILL)
+    def kill(event: str, _arguments: object) -> None:
+        if event in EVENTS and next(seen) == at_event:
+            os.kill(os.getpid(), signal.SIGKILL)
 
-        try:
-            opened = open_library(folder, PASSPHRASE, "hk")
-            sys.addaudithook(kill)
-            if after_s:
-                signal.signal(signal.SIGALRM, signal.SIG_DFL)  # which ends the process as a kill does
-                signal.setitimer(signal.ITIMER_REAL, after_s)
-            change_data_key(opened, ["hk"], silent)
-        finally:
-            os._exit(0)
-    return os.WIFSIGNALED(os.waitpid(child, 0)[1])
+    def change() -> None:
+        opened = open_library(folder, PASSPHRASE, "hk")
+        sys.addaudithook(kill)
+        change_data_key(opened, ["hk"], nobody)
+
+    return end_of_child(change, after_s) == KILLED
 
 
 def faults_after(folder: Path) -> tuple[bool, list[str]]:
@@ -110,35 +97,37 @@ def faults_after(folder: Path) -> tuple[bool, list[str]]:
     return is_new, faults
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=100, help="kills at random instants")
-    parser.add_argument("--seed", type=int, default=7)
-    required = parser.parse_args()
-    rng = random.Random(required.seed)
-    kills = new = at_fault = 0
-    with tempfile.TemporaryDirectory() as place:
-        untouched = Path(place) / "untouched"
-        make(untouched)
-        whole_s = -time.monotonic()
-        kill_in_child(Path(shutil.copytree(untouched, Path(place) / "timed")), 0, 0.0)
-        whole_s += time.monotonic()
-        runs = [(k, 0.0) for k in range(1, 1000)] + [(0, rng.uniform(0.001, whole_s)) for _ in range(required.count)]
-        is_through = False
-        for number, (at_event, after_s) in enumerate(runs):
-            if at_event and is_through:
-                continue
-            folder = Path(shutil.copytree(untouched, Path(place) / str(number)))
-            was_killed = kill_in_child(folder, at_event, after_s)
-            is_through = is_through or (bool(at_event) and not was_killed)
-            is_new, faults = faults_after(folder)
-            kills, new, at_fault = kills + was_killed, new + is_new, at_fault + bool(faults)
-            if faults:
-                print(f"event {at_event}, {after_s:.3f} s: {faults}")
-            shutil.rmtree(folder)
-    print(f"{kills} kills: {at_fault} libraries at fault; the new key in {new}, the old one in the others")
-    return 1 if at_fault else 0
+def change_killed(place: Path, count: int, seed: int) -> Found:
+    """At every file operation, then `count` times at random."""
+    rng, found = random.Random(seed), Found()
+    untouched = place / "untouched"
+    make(untouched)
+    whole_s = -time.monotonic()
+    kill_in_child(copy_of(untouched, place / "timed"), 0, None)
+    whole_s += time.monotonic()
+
+    def try_once(at_event: int, after_s: float | None) -> bool:
+        folder = copy_of(untouched, place / "killed")
+        was_killed = kill_in_child(folder, at_event, after_s)
+        is_new, faults = faults_after(folder)
+        found.count["kills"] += was_killed
+        found.count["new keys"] += is_new
+        found.faults += [f"event {at_event}, {after_s} s: {fault}" for fault in faults]
+        shutil.rmtree(folder)
+        return was_killed
+
+    at_event = 1
+    while try_once(at_event, None):
+        at_event += 1
+    for _ in range(count):
+        try_once(0, rng.uniform(0.001, whole_s))
+    return found
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(
+        __doc__,
+        lambda asked, folder: change_killed(folder, asked.count, asked.seed),
+        count=(100, "kills at random instants"),
+        seed=7,
+    )

@@ -10,17 +10,12 @@ import argparse
 import re
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
+from tests.driver import Found, drive
+from tests.quick_library import PASSPHRASE, quick_library
 
-PASSPHRASE = "four short words here"
 CHILD = """
 import sys, time
 from pathlib import Path
@@ -55,7 +50,7 @@ def tell(words):
     print(words, flush=True)
     sys.stdin.readline()
 
-controller.open(folder, passphrase, "hk")
+controller.open(lambda holder: holder.open(folder, passphrase, "hk"))
 while controller.state is None:
     app.processEvents()
 controller.run(
@@ -86,7 +81,7 @@ for k in range(int(sys.argv[3])):
         time.sleep(0.01)
     assert len(said) == 4 + 2 * k, "the library answered under the lock"
     tell("locked")
-    controller.unlock("hk", passphrase, None, asker.on_done, asker.on_failed, asker)
+    controller.call(lambda holder: holder.unlock("hk", passphrase, None), asker.on_done, asker.on_failed, asker)
     wait(6 + 2 * k)
     assert 1 in said[-2:], said
 print("written", writer.stop().state, flush=True)
@@ -131,10 +126,9 @@ def copies_of(key: bytes, process_id: int) -> Copies:
 
 def measured(place: Path, locks: int) -> list[tuple[str, Copies]]:
     """What is found at each stop of the child: open, locked, open, ..."""
-    folder = place / "library"
-    folder.mkdir()
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)).close()
+    with quick_library(place / "library") as opened:
+        folder, data_key = opened.folder, opened.data_key
+    assert data_key is not None
     command = [sys.executable, "-c", CHILD, str(folder), PASSPHRASE, str(locks)]
     found: list[tuple[str, Copies]] = []
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:
@@ -150,16 +144,15 @@ def measured(place: Path, locks: int) -> list[tuple[str, Copies]]:
     return found
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--locks", type=int, default=3)
-    required = parser.parse_args()
-    with tempfile.TemporaryDirectory() as place:
-        found = measured(Path(place), required.locks)
+def run(asked: argparse.Namespace, place: Path) -> Found:
+    found = measured(place, asked.locks)
     for state, copies in found:
         print(f"{state}: {copies}")
-    return 1 if len(found) != 2 * required.locks + 1 or any(c.all for state, c in found if state == "locked") else 0
+    faults = [f"locked: {copies}" for state, copies in found if state == "locked" and copies.all]
+    if len(found) != 2 * asked.locks + 1:
+        faults.append("the child ended by itself")
+    return Found(faults=faults)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(__doc__, run, locks=3)

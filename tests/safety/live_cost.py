@@ -6,7 +6,6 @@ The cost is that of readers and journal, without live work and screen; what the 
 taken off. A delay runs from a sample's own stamp to when it can be taken from the buffer.
 """
 
-import argparse
 import sys
 import tempfile
 import threading
@@ -17,6 +16,7 @@ import numpy as np
 
 from app.acquisition.acquisition import Acquisition
 from devices.simulation.replay import POLL_S, ReplaySource
+from tests.driver import options
 from tests.safety.journal_material import ID
 from tests.safety.live_material import numbered_session, open_journal
 
@@ -95,9 +95,7 @@ def _share(seconds: float) -> float:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=30.0)
-    seconds = parser.parse_args().seconds
+    seconds = options(__doc__, seconds=30.0).seconds
     with tempfile.TemporaryDirectory(prefix="gaitwright-cost-") as name:
         folder = Path(name)
         for sources in (1, SENSORS):

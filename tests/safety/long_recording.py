@@ -6,7 +6,6 @@
 At 20 times the speed the clock of sensors, recording and journal runs 20 times as fast; disk and processor do not.
 """
 
-import argparse
 import os
 import sys
 import tempfile
@@ -21,6 +20,7 @@ import numpy as np
 from app.acquisition.acquisition import Acquisition
 from core.samples import ImuBlock
 from devices.simulation.replay import ReplaySource
+from tests.driver import options
 from tests.safety.journal_material import ID
 from tests.safety.live_material import RATE_HZ, faults_of, numbered_session, open_journal, read_back
 
@@ -149,11 +149,12 @@ def _is_short(block: ImuBlock, hours: float) -> bool:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--hours", type=float, default=2.0)
-    parser.add_argument("--speed", type=float, default=1.0)
-    parser.add_argument("--folder", type=Path, help="a disk with room for 1.5 GB per hour of 20 times the speed")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        hours=2.0,
+        speed=1.0,
+        folder={"type": Path, "help": "a disk with room for 1.5 GB per hour of 20 times the speed"},
+    )
     with tempfile.TemporaryDirectory(prefix="gaitwright-long-", dir=required.folder) as folder:
         run = record_long(Path(folder), required.hours, required.speed)
     for fault in run.faults:

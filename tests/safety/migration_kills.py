@@ -9,16 +9,15 @@ is brought to that step. It is then opened by a process that is killed, and once
 there as they were, as they are where nobody killed anything, and every sample has to be read as it was recorded.
 """
 
-import argparse
+import itertools
 import os
 import random
 import shutil
 import signal
-import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -27,30 +26,17 @@ from sqlalchemy import Connection, Engine, event, inspect, text
 
 from app.storage.data_key import DataKey
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.schema import NEWEST, alembic_config, move
+from app.storage.database.schema import NEWEST
+from app.storage.database.steps import alembic_config, move
 from app.storage.exchange import session_with_samples
 from app.storage.layout import DATABASE
 from app.storage.opened import logged_in, slots_of
-from tests.safety.clinic_material import OPERATORS, PASSPHRASE, make_library, silent
+from app.system.progress import nobody
+from tests.driver import KILLED, Found, drive, end_of_child
+from tests.safety.clinic_material import OPERATORS, PASSPHRASE, make_library
 
 TIMED = ("audit", "alembic_version")  # a login is added to the one, the other reports the version
 Rows = Mapping[str, tuple[tuple[str, ...], list[tuple[object, ...]]]]
-
-
-@dataclass(slots=True)
-class Kills:
-    """`updated`: of them, how many came after the update was written."""
-
-    kills: int = 0
-    updated: int = 0
-    libraries: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.libraries} earlier versions, {self.kills} kills ({self.updated} after the update was written): "
-            f"{len(self.faults)} faults"
-        )
 
 
 def steps() -> list[str]:
@@ -121,7 +107,7 @@ def samples_of(folder: Path, key: DataKey) -> tuple[str, ...]:
     with logged_in(folder, key, OPERATORS[0]) as opened:
         found = [*opened.library.faults(), *(fault.what for fault in opened.library.audit.verify().faults)]
         for line in opened.library.sessions.list():
-            visit = session_with_samples(opened, opened.library.sessions.view(line.id), {}, silent)
+            visit = session_with_samples(opened, opened.library.sessions.view(line.id), {}, nobody)
             found += [
                 f"{recording.name} {site} {sha256(block.gyr_rad_s.tobytes() + block.acc_m_s2.tobytes()).hexdigest()}"
                 for recording in visit.recordings
@@ -130,27 +116,20 @@ def samples_of(folder: Path, key: DataKey) -> tuple[str, ...]:
     return tuple(found)
 
 
-def open_killed(folder: Path, key: DataKey, at_statement: int, after_s: float) -> bool:
+def open_killed(folder: Path, key: DataKey, at_statement: int, after_s: float | None) -> bool:
     """Open the library in a child that is killed before its n-th statement, or after a while; whether it was."""
-    if (child := os.fork()) == 0:
-        seen = 0
+    seen = itertools.count(1)
 
-        def kill(*_: object) -> None:
-            nonlocal seen
-            seen += 1
-            if seen == at_statement:
-                os.kill(os.getpid(), signal.SIGKILL)
+    def kill(*_: object) -> None:
+        if next(seen) == at_statement:
+            os.kill(os.getpid(), signal.SIGKILL)
 
-        try:
-            event.listen(Engine, "before_cursor_execute", kill)
-            event.listen(Engine, "commit", kill)
-            if after_s:
-                signal.signal(signal.SIGALRM, signal.SIG_DFL)  # which ends the process as a kill does
-                signal.setitimer(signal.ITIMER_REAL, after_s)
-            logged_in(folder, key, OPERATORS[0]).library.close()
-        finally:
-            os.kill(os.getpid(), signal.SIGTERM)  # without what a process does at its end, which is the parent's
-    return os.WTERMSIG(os.waitpid(child, 0)[1]) != signal.SIGTERM
+    def open_once() -> None:
+        event.listen(Engine, "before_cursor_execute", kill)
+        event.listen(Engine, "commit", kill)
+        logged_in(folder, key, OPERATORS[0]).library.close()
+
+    return end_of_child(open_once, after_s) == KILLED
 
 
 def count_statements(folder: Path, key: DataKey) -> tuple[int, float]:
@@ -170,14 +149,14 @@ def count_statements(folder: Path, key: DataKey) -> tuple[int, float]:
     return seen[0], time.monotonic() - begin_s
 
 
-def update_killed(place: Path, count: int, seed: int, required: tuple[str, ...] = ()) -> Kills:
+def update_killed(place: Path, count: int, seed: int, required: tuple[str, ...] = ()) -> Found:
     """Kill the update from each earlier version (or the `required`) `count` times, half of them at statements."""
-    rng, found = random.Random(seed), Kills()
+    rng, found = random.Random(seed), Found()
     newest = place / "newest"
     key = make(newest)
     recorded = samples_of(newest, key)
     for step in required or steps()[:-1]:
-        found.libraries += 1
+        found.count["earlier versions"] += 1
         earlier, whole = place / step, place / f"{step}-whole"
         shutil.copytree(newest, earlier)
         with database_of(earlier, key) as database, database.rebuilding() as connection:
@@ -192,33 +171,27 @@ def update_killed(place: Path, count: int, seed: int, required: tuple[str, ...] 
             found.faults.append(f"{step}: the update itself changed samples")
         for number in range(count):
             at_statement = rng.randint(1, statements) if number % 2 == 0 else 0
-            after_s = 0.0 if at_statement else rng.uniform(0.001, whole_s)
+            after_s = None if at_statement else rng.uniform(0.001, whole_s)
             folder = Path(shutil.copytree(earlier, place / "killed"))
-            found.kills += open_killed(folder, key, at_statement, after_s)
+            found.count["kills"] += open_killed(folder, key, at_statement, after_s)
             version, between = rows_of(folder, key, before)
-            found.updated += version == NEWEST
+            found.count["after the update was written"] += version == NEWEST
             wrong = {
                 f"neither the one nor the other: {version}": version not in (step, NEWEST),
                 "rows lost by the kill": between != before,
                 "samples lost": samples_of(folder, key) != recorded,
                 "other rows than without a kill": rows_of(folder, key) != (NEWEST, expected),
             }
-            reported = f"{step}, statement {at_statement}, {after_s:.3f} s"
+            reported = f"{step}, statement {at_statement}, {after_s} s"
             found.faults += [f"{reported}: {what}" for what, is_wrong in wrong.items() if is_wrong]
             shutil.rmtree(folder)
     return found
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=40, help="kills for each version")
-    parser.add_argument("--seed", type=int, default=1)
-    asked = parser.parse_args()
-    with tempfile.TemporaryDirectory() as place:
-        found = update_killed(Path(place), asked.count, asked.seed)
-    print(found, *found.faults, sep="\n")
-    raise SystemExit(bool(found.faults))
-
-
 if __name__ == "__main__":
-    main()
+    drive(
+        __doc__,
+        lambda asked, place: update_killed(place, asked.count, asked.seed),
+        count=(40, "kills for each version"),
+        seed=1,
+    )

@@ -7,14 +7,10 @@ then rows and journals have to be what they were, as both databases say themselv
 import datetime
 import hashlib
 import json
-import multiprocessing
 import random
-import signal
-import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -25,7 +21,8 @@ from app.storage.clinic.joining import new_station, prepare_server
 from app.storage.clinic.moving import bring_back, move_to_server
 from app.storage.layout import DATABASE, MOVING, RECORDINGS, STATION, SUFFIX
 from app.storage.opened import open_library
-from app.storage.stored import LibraryError
+from app.system.progress import nobody
+from tests.driver import KILLED, Found, end_of_child
 from tests.safety.clinic_material import (
     OPERATORS,
     PASSPHRASE,
@@ -35,10 +32,8 @@ from tests.safety.clinic_material import (
     make_library,
     name_of,
     rows_of,
-    silent,
 )
 
-FORK = multiprocessing.get_context("fork")  # which saves the imports
 FIRST_S, LONGER = 1.0, 1.1  # in which a move may be done; it is then measured
 TABLES = [
     *("patients", "sessions", "joints", "placements", "placed_sensors", "recordings", "journals"),
@@ -47,25 +42,9 @@ TABLES = [
 PLACES = {"kept_as", "station"}  # columns that report where something is
 
 
-@dataclass(slots=True)
-class Moves:
-    """`amid`: kills that found the work begun, and not done."""
-
-    kills: int = 0
-    amid: int = 0
-    moves: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.kills} kills in {self.moves} moves there or back, {self.amid} of them amid the work, "
-            f"{len(self.faults)} faults"
-        )
-
-
-def move_killed(server: OwnServer, folder: Path, kills: int, seed: int) -> Moves:
+def move_killed(server: OwnServer, folder: Path, kills: int, seed: int) -> Found:
     """There and back with one library, until so many children were killed."""
-    found, rng = Moves(), random.Random(seed)
+    found, rng = Found(), random.Random(seed)
     untouched = folder / "untouched"
     make_library(untouched)
     with open_library(untouched, PASSPHRASE, OPERATORS[0]) as opened:
@@ -73,7 +52,7 @@ def move_killed(server: OwnServer, folder: Path, kills: int, seed: int) -> Moves
         key = bytes(opened.data_key).hex()
     template = server.database()
     prepare_server(template)
-    while found.kills < kills:
+    while found.count["kills"] < kills:
         with tempfile.TemporaryDirectory(dir=folder) as here:
             _Journey(server, Path(here), copy_of(untouched, Path(here) / "library"), key, found, rng).go(
                 server.database(name_of(template))
@@ -87,7 +66,7 @@ class _Journey:
     longest_s = FIRST_S
 
     def __init__(
-        self, server: OwnServer, here: Path, library: Path, key: str, found: Moves, rng: random.Random
+        self, server: OwnServer, here: Path, library: Path, key: str, found: Found, rng: random.Random
     ) -> None:
         self._server, self._library, self._key, self._found, self._rng = server, library, key, found, rng
         self._place, self._back = here / "place", here / "back"
@@ -102,13 +81,13 @@ class _Journey:
                 with open_library(self._library, PASSPHRASE, OPERATORS[0]):
                     return  # killed at its very end
             with open_library(self._library, PASSPHRASE, OPERATORS[0], is_to_be_moved=True) as opened:
-                move_to_server(opened, station, silent)
+                move_to_server(opened, station, nobody)
 
         def back() -> None:
             if self._back.exists():
                 return
             with open_library(self._library, PASSPHRASE, OPERATORS[0], is_to_be_moved=True) as opened:
-                bring_back(opened, self._back, silent)
+                bring_back(opened, self._back, nobody)
 
         self._until_done(there, address)
         self._compare("on the server", rows, server_rows(address))
@@ -121,27 +100,24 @@ class _Journey:
         self._compare("back in a folder", rows, folder_rows(self._back, self._key))
         if _journals(self._back / RECORDINGS) != journals:
             self._found.faults.append("other journals came back")
-        self._found.moves += 2
+        self._found.count["moves there or back"] += 2
         self._server.drop(address)
 
     def _until_done(self, work: Callable[[], None], address: str) -> None:
         is_done = False
         while not is_done:
-            begin_s, child = time.monotonic(), FORK.Process(target=_work, args=(work,))
-            child.start()
-            time.sleep(self._rng.uniform(0.0, _Journey.longest_s * 1.1))
-            child.kill()
-            child.join()
-            is_done = child.exitcode == 0
-            if not is_done and child.exitcode != -signal.SIGKILL:
+            begin_s = time.monotonic()
+            ended = end_of_child(work, self._rng.uniform(0.0, _Journey.longest_s * 1.1))
+            is_done = ended == 0
+            if not is_done and ended != KILLED:
                 self._found.faults.append("a child ended by itself, and not well")
                 return
             if is_done:
                 _Journey.longest_s = time.monotonic() - begin_s
             else:
-                self._found.kills += 1
+                self._found.count["kills"] += 1
                 _Journey.longest_s *= LONGER  # the machine may be busy: some day it has to get through
-                self._found.amid += (self._library / MOVING).exists() or _state(address) == "closed"
+                self._found.count["amid the work"] += (self._library / MOVING).exists() or _state(address) == "closed"
             self._look_for_two_ends(address)
 
     def _look_for_two_ends(self, address: str) -> None:
@@ -160,15 +136,6 @@ class _Journey:
         self._found.faults += [
             f"{table} {where} is not what it was" for table in required if required[table] != got[table]
         ]
-
-
-def _work(work: Callable[[], None]) -> None:
-    """In the child; what it is refused is stated."""
-    try:
-        work()
-    except LibraryError as refusal:
-        print(refusal, flush=True)
-        sys.exit(1)
 
 
 def _state(address: str) -> str:

@@ -8,7 +8,6 @@ port: by itself, with streams asked for on this computer, and with streams asked
 there. Waiting at a port of one's own (bind) is no call.
 """
 
-import argparse
 import os
 import re
 import shutil
@@ -21,6 +20,8 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+
+from tests.driver import HIDDEN, options
 
 ROOT = Path(__file__).parents[2]
 NEEDED = ("unshare", "ip", "strace", "Xvfb", "openbox", "xdotool")
@@ -63,13 +64,7 @@ def why_not() -> str:
 
 
 def lead_session(tour: str = "keyboard") -> Calls:
-    """Lead a session from the first start to the saved results, and give whom it called.
-
-    Raises
-    ------
-    RuntimeError
-        The session could not be led to its end.
-    """
+    """Lead a session from the first start to the saved results, and give whom it called."""
     tail = ("-m", "tests.tours.tour", "{folder}", f"--{tour}", "--theme", "light", "--trace", "{trace}")
     return _called(tail, LONGEST_S)
 
@@ -148,10 +143,7 @@ def _stream() -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--inside", nargs=2, help=argparse.SUPPRESS)
-    parser.add_argument("--stream", action="store_true", help=argparse.SUPPRESS)
-    required = parser.parse_args()
+    required = options(__doc__, inside={"nargs": 2, "help": HIDDEN}, stream=(False, HIDDEN))
     if required.inside:
         _search(*required.inside)
         return

@@ -7,7 +7,6 @@ a child counts them through /proc, so that what it looks for is not what it find
 this is a measurement, not a control.
 """
 
-import argparse
 import json
 import subprocess
 import sys
@@ -23,6 +22,7 @@ from PySide6.QtWidgets import QApplication
 from app.main_window import MainWindow
 from app.system.settings import Settings
 from app.theme.current import load_fonts
+from tests.driver import options
 
 SHIFTED = {"passphrase": "gnts!rinsu!vnser!idsd", "code": "Q,1056,YX["}  # each letter is its adjacent one
 MAKE = """
@@ -70,9 +70,7 @@ def count(own: int) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--locks", type=int, default=3)
-    args = parser.parse_args()
+    args = options(__doc__, locks=3)
     app = QApplication([])
     load_fonts()
     with tempfile.TemporaryDirectory() as place:

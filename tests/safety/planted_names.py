@@ -14,9 +14,8 @@ import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -28,10 +27,12 @@ from app.storage.opened import create_library, open_library
 from app.storage.recovery import find_interrupted, recover
 from app.storage.stored import Operator, Role
 from app.system.logs import start_logging
+from app.system.progress import nobody
 from core.body import Site
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.folder_export import write_folder
+from tests.driver import HIDDEN, Found, drive
 
 ROOT = Path(__file__).parents[2]
 STEM = "Kowalczyk"  # of all names, so that one search finds any of them
@@ -40,24 +41,6 @@ ENCODINGS = ("utf-8", "utf-16-le", "utf-16-be")
 PASSPHRASE = "a passphrase planted too"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 FORGOTTEN_S = 60  # after which a child whose parent is gone ends by itself
-
-
-@dataclass(slots=True)
-class Search:
-    """`found` where a name or secret stood; `faults` of libraries that were not whole after the kill."""
-
-    kills: int = 0
-    names: int = 0
-    files: int = 0
-    recovered: int = 0
-    found: list[str] = field(default_factory=list)
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.kills} kills, {self.names} names planted, {self.files} files searched: "
-            f"{len(self.found)} found, {len(self.faults)} libraries at fault, {self.recovered} recordings recovered"
-        )
 
 
 def named_session(name: str) -> Session:
@@ -92,7 +75,7 @@ def work(folder: Path) -> None:
     while time.monotonic() < until_s:
         name = NAMES[number % len(NAMES)]
         session = replace(named_session(name), patient=Patient(code=f"{name}-{number}"))
-        imported = import_session(opened, session, silent, room=ANY_ROOM)
+        imported = import_session(opened, session, nobody, room=ANY_ROOM)
         write_folder(opened, imported.session_id, folder / "exports" / str(number), {})
         try:
             (folder / name).read_bytes()
@@ -104,12 +87,8 @@ def work(folder: Path) -> None:
         number += 1
 
 
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
-
-
-def kill_and_search(folder: Path, count: int, seed: int) -> Search:
-    rng, search = random.Random(seed), Search()
+def kill_and_search(folder: Path, count: int, seed: int) -> Found:
+    rng, search = random.Random(seed), Found()
     for kill in range(count):
         place = folder / str(kill)
         (place / "tmp").mkdir(parents=True)
@@ -127,14 +106,14 @@ def kill_and_search(folder: Path, count: int, seed: int) -> Search:
             if child.poll() is not None:
                 search.faults.append(f"{kill}: the child ended by itself")
             child.send_signal(signal.SIGKILL)
-        search.kills += 1
-        search.names += 1 + len(list(place.glob("exports/*")))  # the operator's, and one for each session
+        search.count["kills"] += 1
+        search.count["names planted"] += 1 + len(list(place.glob("exports/*")))  # the operator's, and of each session
         search_files(place, secrets, search)
         _reopen(place, search)
     return search
 
 
-def search_files(place: Path, secrets: list[str], search: Search) -> None:
+def search_files(place: Path, secrets: list[str], search: Found) -> None:
     required = [STEM.lower().encode(encoding) for encoding in ENCODINGS] + [PASSPHRASE.lower().encode()]
     for secret in secrets:
         required += [secret.lower().encode(), secret.replace("-", "").lower().encode()]
@@ -142,39 +121,31 @@ def search_files(place: Path, secrets: list[str], search: Search) -> None:
     for path in place.rglob("*"):
         content = path.read_bytes() if path.is_file() else b""
         lower = content.lower() + str(path.relative_to(place)).lower().encode()
-        search.files += path.is_file()
+        search.count["files searched"] += path.is_file()
         if key in content or any(one in lower for one in required):
-            search.found.append(str(path))
+            search.faults.append(f"found: {path}")
 
 
-def _reopen(place: Path, search: Search) -> None:
+def _reopen(place: Path, search: Found) -> None:
     with open_library(place / "library", PASSPHRASE) as opened:
         for one in find_interrupted(opened):
-            recover(opened, one, silent)
-            search.recovered += 1
+            recover(opened, one, nobody)
+            search.count["recordings recovered"] += 1
         faults = [*opened.library.faults(), *opened.library.audit.verify().faults]
         for line in opened.library.sessions.list():
             visit = opened.library.sessions.get(line.id)
-            read = session_with_samples(opened, visit, {}, silent)
+            read = session_with_samples(opened, visit, {}, nobody)
             if read.recordings and STEM not in read.recordings[0].name:
                 faults.append(f"session {line.id} lost its names")
         search.faults += [f"{place.name}: {fault}" for fault in faults]
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--work", type=Path, help=argparse.SUPPRESS)
-    required = parser.parse_args()
-    if required.work:
-        work(required.work)
-        return 0
-    with tempfile.TemporaryDirectory(prefix="gaitwright-names-") as folder:
-        search = kill_and_search(Path(folder), required.count, required.seed)
-    print(search, *search.found, *search.faults, sep="\n")
-    return 1 if search.found or search.faults else 0
+def run(asked: argparse.Namespace, folder: Path) -> Found:
+    if asked.work:
+        work(Path(asked.work))
+        return Found()
+    return kill_and_search(folder, asked.count, asked.seed)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(__doc__, run, count=100, seed=1, work=("", HIDDEN))

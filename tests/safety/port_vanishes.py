@@ -8,7 +8,6 @@ Six emulated x-IMU3s at 200 Hz, each at a pseudo-terminal of its own; in each ro
 again, at moments of their own.
 """
 
-import sys
 from collections.abc import Collection
 from functools import partial
 from pathlib import Path
@@ -24,8 +23,9 @@ from devices.emulators.ximu3 import Ximu3Voice
 from devices.source import DecodedSensor
 from devices.stream import ByteSource
 from devices.transport.ports import PortInfo, SerialPort
+from tests.driver import Found, drive
 from tests.safety.journal_material import KEY
-from tests.safety.vanishing import Pulling, Vanished, run
+from tests.safety.vanishing import Pulling
 
 SENSORS, RATE_HZ, LOOP = 6, 200, 1900
 
@@ -35,7 +35,7 @@ def motion(number: int) -> tuple[float, ...]:
     return (float(number % LOOP), 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
-def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
+def vanish_often(folder: Path, count: int, seed: int) -> Found:
     names = [f"EMU{k:05d}" for k in range(SENSORS)]
     emulations = {
         name: Emulation(Ximu3Voice(name, motion, rate_hz=RATE_HZ), partial(PseudoTerminal, folder / name))
@@ -77,4 +77,4 @@ def faults_of(name: str, decoded: DecodedSensor, gaps: int) -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit(run(__doc__, vanish_often))
+    drive(__doc__, lambda asked, folder: vanish_often(folder, asked.count, asked.seed), count=200, seed=1)

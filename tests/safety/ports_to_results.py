@@ -9,7 +9,6 @@ search and placed, standing, free motion, walks, results. Then what was recorded
 what the sensors measured, and the angles of the results with the patient's, which are zero while standing.
 """
 
-import argparse
 import json
 import os
 import subprocess
@@ -50,6 +49,7 @@ from devices.emulators.csv_lines import COLUMNS as EMULATED_COLUMNS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient, EmulatedSensor
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.transport.ports import MORE_PORTS
+from tests.driver import HIDDEN, options
 
 SITES = len(LEG_SITES)
 PATIENCE_S = 90.0
@@ -163,7 +163,9 @@ class WindowSession:
         self._application, self.shots = application, shots
         os.environ["XDG_CONFIG_HOME"] = str(folder)
         self.controller = LibraryController()
-        self.controller.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
+        self.controller.open(
+            lambda holder: holder.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
+        )
         self.wait(lambda: self.controller.state is not None, "library")
         settings = Settings(QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat))
         self.wizard = Wizard(self.controller, settings)
@@ -419,13 +421,14 @@ def look(session: WindowSession, shots: Path | None, name: str) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
-    parser.add_argument("--rate", type=int, default=100, metavar="HZ", help="as their owner set them: 100 or 200 (100)")
-    parser.add_argument("--walks", type=int, default=3)
-    parser.add_argument("--shots", type=Path, metavar="FOLDER", help="write pictures of the window there")
-    parser.add_argument("--play", type=Path, help=argparse.SUPPRESS)  # be the sensors' process
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        kinds={"nargs": "+", "choices": KINDS, "default": KINDS},
+        rate=(100, "as their owner set them: 100 or 200 (100)"),
+        walks=3,
+        shots={"type": Path, "metavar": "FOLDER", "help": "write pictures of the window there"},
+        play={"type": Path, "help": HIDDEN},
+    )
     if required.play is not None:
         play(required.kinds[0], required.rate, required.play)
         return 0

@@ -12,7 +12,6 @@ its life's seed, its step and what was done before; `--life SEED/NUMBER` plays o
 with 1 if there was any.
 """
 
-import argparse
 import json
 import os
 import random
@@ -33,6 +32,7 @@ from app.storage.layout import KEYS
 from app.storage.opened import slots_of
 from devices.files.session_folder import write_session
 from devices.simulation.walker import DEMONSTRATION, simulate
+from tests.driver import options
 from tests.safety.random_visits import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, left_open
 
@@ -150,11 +150,9 @@ def play(seconds: float, seed: int, folder: Path) -> Outcome:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--hours", type=float, default=2.0)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--life", metavar="SEED/NUMBER", help="this life alone, for two minutes")
-    required = parser.parse_args()
+    required = options(
+        __doc__, hours=2.0, seed=1, life={"metavar": "SEED/NUMBER", "help": "this life alone, for two minutes"}
+    )
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         if required.life:
             outcome = Outcome()

@@ -6,7 +6,6 @@ PLACE holds the library, the user's settings and folders; `random_keys` makes it
 `did` counts what was reached, `fault` is what must not be, with the step and what was done before it.
 """
 
-import argparse
 import faulthandler
 import gc
 import json
@@ -19,37 +18,29 @@ import threading
 import time
 import traceback
 from collections import deque
-from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
-
-from app.theme.current import load_fonts
 
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import sqlcipher3.dbapi2 as sqlite
-from PySide6.QtCore import QMessageLogContext, QObject, QSettings, Qt, QTimer, QtMsgType, qInstallMessageHandler
+from PySide6.QtCore import QMessageLogContext, QObject, Qt, QTimer, QtMsgType, qInstallMessageHandler
 from PySide6.QtGui import QDrag
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
 
-from app.acquisition.acquisition import Acquisition
-from app.main_window import SWITCH_S, MainWindow
+from app.main_window import MainWindow
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.opened import OpenedLibrary
-from app.system.settings import Settings
-from app.wizard.sensors import sources
-from app.wizard.worn_sensors import SourceChoice
-from app.workers.garbage import GarbageCollector
-from devices.simulation.replay import ReplaySource
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.watchdog import Watchdog
+from tests.driver import options
 from tests.safety.random_user import RandomUser
 from tests.safety.random_visits import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
+from tests.safety.window_material import application, fast_patient, offer, window_in
 
 SPEED = 20.0
 PAUSE_MS = (10, 120)
@@ -304,53 +295,31 @@ def listen(life: RandomLife) -> None:
     logging.getLogger().addHandler(_LoudLog(life))
 
 
-def simulated_source() -> SourceChoice:
-    """A patient whose time runs faster than ours."""
-    played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
-    session = simulate(replace(DEMONSTRATION, recordings=played)).session
-
-    def make() -> Acquisition:
-        source = ReplaySource(session, speed=SPEED)
-        return Acquisition([source], source.now_ns)
-
-    return SourceChoice("fast", "Fast patient", make, is_simulated=True)
-
-
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("place", type=Path)
-    parser.add_argument("--seed", default="1/1")
-    parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--end", choices=ENDS, default="close")
-    parser.add_argument(
-        "--tell", dest="show_message", action="store_true", help="write every step to the standard error"
+    required = options(
+        __doc__,
+        place=Path,
+        seed="1/1",
+        seconds=60.0,
+        end={"choices": ENDS, "default": "close"},
+        tell={"dest": "show_message", "action": "store_true", "help": "write every step to the standard error"},
     )
-    required = parser.parse_args()
     faulthandler.enable()
-    source = simulated_source()
-    sources.choices = lambda: (source,)  # before the wizard takes it from there
-    sys.setswitchinterval(SWITCH_S)
-    application = QApplication([])
-    application.setApplicationName("Gaitwright")
-    application.setStyle("Fusion")
-    load_fonts()
+    offer("fast", fast_patient(speed=SPEED))
+    made = application()
     chance = random.Random(required.seed)
-    settings = Settings(QSettings(str(required.place / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(settings, required.place / "library")
+    window = window_in(made, required.place / "library")
     dog = Watchdog()
     user = RandomUser(window, chance, required.place)
     life = RandomLife(window, user, dog, chance, required.end)
     life.shows = required.show_message
     listen(life)
-    garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
-    window.preparing.done.connect(garbage.pass_over_imported)
-    window.show()
     window.activateWindow()
     window.prepare()
     dog.start()
     QTimer.singleShot(0, life, life.step)
     QTimer.singleShot(round(1000 * required.seconds), life, life.finish)
-    application.exec()
+    made.exec()
     faulthandler.dump_traceback_later(HANGS_S, exit=True)
     dog.stop()
     window.finish()

@@ -14,15 +14,13 @@ how many are stamped more than `RIGHT_S` wrong is reported: a clock that leaps a
 
 import argparse
 import random
-import sys
 import tempfile
-import time
 import traceback
 import uuid
 import warnings
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass, field
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +43,7 @@ from devices.live import SensorDetails
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Framer, Row
 from devices.transport.channels import Channel
+from tests.driver import Found, drive
 from tests.safety.device_fuzz import COLUMNS, MTI, OLD_SHIMMER3, SHIMMER3, Fuzzed, drivers, motion, old_shimmer3, row_of
 from tests.safety.journal_material import NO_ROOM_ASKED
 from tests.safety.stream_bursts import Sent, in_bursts
@@ -55,6 +54,7 @@ PIECES = (1, 40)  # messages that arrive together
 HELD_UP_SHARE, HELD_UP_S = 1 / 500, 8.0
 LOST_SHARE = 1 / 300  # of the pieces, before which the source was lost
 RIGHT_S = 0.02
+WRONG = f"stamped more than {1000 * RIGHT_S:.0f} ms wrong"
 BEGIN_S = 5000.0  # on the host's clock
 NAME, SITE = "fuzzed", Site.LEFT_FOOT
 
@@ -77,26 +77,6 @@ class Arrival:
     is_back: bool
 
 
-@dataclass(slots=True)
-class Outcome:
-    """`kept` of the `whole` samples are in the recordings, `wrong` of them with a stamp that is not right."""
-
-    recordings: int = 0
-    samples: int = 0
-    whole: int = 0
-    kept: int = 0
-    wrong: int = 0
-    seconds: float = 0.0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{self.recordings} recordings of {self.samples} samples, {self.whole} of them sent whole: "
-            f"{len(self.faults)} faults, {self.whole - self.kept} left out, {self.wrong} stamped more than "
-            f"{1000 * RIGHT_S:.0f} ms wrong, {self.seconds:.0f} s"
-        )
-
-
 def streams() -> dict[str, Stream]:
     settings = {
         "x-IMU3, binary": (XIMU3, {}, 100.0),
@@ -115,8 +95,8 @@ def streams() -> dict[str, Stream]:
     return {**found, "Lab Streaming Layer": Stream(SourceInfo(LSL, "1", "", (NAME,)), None, 100.0)}
 
 
-def fuzz(stream: Stream, samples: int, seed: int) -> Outcome:
-    outcome, begin_s = Outcome(samples=samples), time.monotonic()
+def fuzz(stream: Stream, samples: int, seed: int) -> Found:
+    outcome = Found(Counter(samples=samples))
     with tempfile.TemporaryDirectory(prefix="gaitwright-fuzz-") as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
         for number, first in enumerate(range(0, samples, PER_RECORDING)):
@@ -125,12 +105,11 @@ def fuzz(stream: Stream, samples: int, seed: int) -> Outcome:
                 _record(stream, min(PER_RECORDING, samples - first), chance, Path(folder), outcome)
             except Exception:  # which is what is looked for
                 outcome.faults.append(f"recording {number}: {traceback.format_exc()}")
-            outcome.recordings += 1
-    outcome.seconds = time.monotonic() - begin_s
+            outcome.count["recordings"] += 1
     return outcome
 
 
-def _record(stream: Stream, samples: int, chance: random.Random, folder: Path, outcome: Outcome) -> None:
+def _record(stream: Stream, samples: int, chance: random.Random, folder: Path, outcome: Found) -> None:
     arrivals = list(_arriving(stream, samples, chance))
     clock = _Clock()
     identity = uuid.UUID(int=chance.getrandbits(128))
@@ -261,7 +240,7 @@ def _contradictions(decoded: DecodedJournal) -> Iterator[str]:
             yield f"{len(block)} samples are told as {counts}"
 
 
-def _compare(stream: Stream, arrivals: Sequence[Arrival], recording: Recording, outcome: Outcome) -> None:
+def _compare(stream: Stream, arrivals: Sequence[Arrival], recording: Recording, outcome: Found) -> None:
     """Count whole samples, those that the recording holds, and those of them whose stamps are not right."""
     taken_s: defaultdict[Row, list[float]] = defaultdict(list)
     for one in (one for arrival in arrivals for one in arrival.sent):
@@ -269,31 +248,28 @@ def _compare(stream: Stream, arrivals: Sequence[Arrival], recording: Recording, 
             continue
         row = tuple(motion(one.number)) if stream.protocol is None else row_of(stream.protocol, one.data)
         taken_s[row] += [] if one.index is None else [one.index / stream.rate_hz]
-    outcome.whole += sum(map(bool, taken_s.values()))
+    outcome.count["sent whole"] += sum(map(bool, taken_s.values()))
     if SITE not in recording.imu:
         return
     block = recording.imu[SITE]
     rows = zip(*block.gyr_rad_s.T.tolist(), *block.acc_m_s2.T.tolist(), strict=True)
     for row, time_s in zip(rows, block.time_s.tolist(), strict=True):
         if sent_s := taken_s.get(row):
-            outcome.kept += 1
-            outcome.wrong += min(abs(time_s - at_s) for at_s in sent_s) > RIGHT_S
+            outcome.count["in the recordings"] += 1
+            outcome.count[WRONG] += min(abs(time_s - at_s) for at_s in sent_s) > RIGHT_S
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--samples", type=int, default=1_000_000, help="of each kind of sensor")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--sensor", default="", help="only those whose name has this in it")
-    required = parser.parse_args()
-    is_right = True
+def run(asked: argparse.Namespace, _: Path) -> Iterator[tuple[str, Found]]:
     for name, stream in streams().items():
-        if required.sensor in name:
-            outcome = fuzz(stream, required.samples, required.seed)
-            print(f"{name}: {outcome}", *sorted(set(outcome.faults))[:3], sep="\n", flush=True)
-            is_right &= not outcome.faults
-    return 0 if is_right else 1
+        if asked.sensor in name:
+            yield name, fuzz(stream, asked.samples, asked.seed)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(
+        __doc__,
+        run,
+        samples=(1_000_000, "of each kind of sensor"),
+        seed=1,
+        sensor=("", "only those whose name has this in it"),
+    )

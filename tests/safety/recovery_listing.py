@@ -7,7 +7,6 @@ cost) and lists them. Timed from the start of the process, with all that it impo
 as those of an installed program are.
 """
 
-import argparse
 import os
 import subprocess
 import sys
@@ -25,6 +24,7 @@ from app.storage.opened import OpenedLibrary, create_library
 from app.storage.stored import Operator, Role, StoredJournal
 from core.samples import ImuBlock
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.driver import options
 from tests.safety.journal_material import LAYOUT, NAMES, NO_ROOM_ASKED, WALKER
 
 ROOT = Path(__file__).parents[2]
@@ -100,10 +100,7 @@ def _interrupt(opened: OpenedLibrary, session_id: UUID, number: int, rows: int) 
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=50)
-    parser.add_argument("--rows", type=int, default=100_000)
-    required = parser.parse_args()
+    required = options(__doc__, count=50, rows=100_000)
     with tempfile.TemporaryDirectory(prefix="gaitwright-listing-") as folder:
         listing = list_in_new_process(Path(folder), required.count, required.rows)
     print(listing)

@@ -7,16 +7,16 @@ spoilt files of optical systems. Check whether one ends or hangs the application
 As `file_fuzz` does it for recordings, by the same process.
 """
 
-import argparse
-import sys
 import tempfile
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import ezc3d
 import numpy as np
 
 from devices.files.limited_reader import LimitedReader, LimitedReading
-from tests.safety.file_fuzz import Read, Spoilable, fuzz, nobody
+from tests.driver import Found, drive
+from tests.safety.file_fuzz import Spoilable, fuzz_each, nobody
 
 FRAMES = 30
 
@@ -58,28 +58,13 @@ def reference_readers() -> dict[str, Spoilable]:
     return {name: Spoilable(content, "reference", read_it, may_be_a_link=False) for name, content in made.items()}
 
 
-def faults_of(name: str, found: Read) -> list[str]:
-    """What is wrong. That the library for C3D ends its process, or has to be ended, is none."""
+def reference_faults(files: int, seed: int, only: Sequence[str] | None = None) -> Iterator[tuple[str, Found]]:
+    """As `fuzz_each`; that the library for C3D ends its process, or has to be ended, is no fault."""
     ended = ("the reader ended, crash", "the reader ended, time")
-    return [fault for fault in found.faults if not (name == "c3d" and fault.endswith(ended))]
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--files", type=int, default=500)
-    parser.add_argument("--seed", type=int, default=1)
-    required = parser.parse_args()
-    faults = 0
-    for name, one in reference_readers().items():
-        reader = LimitedReader()
-        try:
-            found = fuzz(one, required.files, required.seed, reader)
-        finally:
-            reader.close()
-        print(f"{name}: {found}", *faults_of(name, found), sep="\n  ")
-        faults += len(faults_of(name, found))
-    return 1 if faults else 0
+    for name, found in fuzz_each(reference_readers(), files, seed, only):
+        found.faults = [fault for fault in found.faults if not (name == "c3d" and fault.endswith(ended))]
+        yield name, found
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(__doc__, lambda asked, _: reference_faults(asked.files, asked.seed), files=500, seed=1)

@@ -7,19 +7,19 @@ Check what the others lose and that the gap is right to a sample.
 Six sources of one sensor each at 200 Hz; in each round four of them vanish once, at moments of their own.
 """
 
-import sys
 from collections.abc import Collection
 from pathlib import Path
 
 from app.acquisition.acquisition import Acquisition
 from devices.simulation.replay import ReplaySource
+from tests.driver import Found, drive
 from tests.safety.live_material import faults_of, numbered_session, read_back
-from tests.safety.vanishing import Pulling, Vanished, run
+from tests.safety.vanishing import Pulling
 
 SOURCES = 6
 
 
-def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
+def vanish_often(folder: Path, count: int, seed: int) -> Found:
     sources = [ReplaySource(numbered_session(f"s{k}", 1), name=f"s{k}") for k in range(SOURCES)]
     acquisition = Acquisition(sources)
 
@@ -35,4 +35,4 @@ def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
 
 
 if __name__ == "__main__":
-    sys.exit(run(__doc__, vanish_often))
+    drive(__doc__, lambda asked, folder: vanish_often(folder, asked.count, asked.seed), count=200, seed=1)

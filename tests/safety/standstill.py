@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -29,6 +30,7 @@ from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.stream import ByteSource
 from devices.transport.ports import PortInfo, SerialPort
+from tests.driver import HIDDEN, Found, drive
 from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import open_journal
 from tests.safety.port_vanishes import RATE_HZ, SENSORS, motion
@@ -88,7 +90,7 @@ def stop_once(seconds: float) -> dict[str, object]:
             Emulation(Ximu3Voice(f"EMU{k:05d}", motion, rate_hz=RATE_HZ), partial(PseudoTerminal, folder / f"port{k}"))
             for k in range(SENSORS)
         ]
-        command = [sys.executable, "-m", "tests.safety.standstill", "--record", name]
+        command = [sys.executable, "-m", "tests.safety.standstill", "--record", name, "--places"]
         process = subprocess.Popen(
             [*command, *(emulation.place for emulation in emulations)],
             stdin=subprocess.PIPE,
@@ -110,24 +112,21 @@ def stop_once(seconds: float) -> dict[str, object]:
     return reported
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=10)
-    parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--record", metavar="FOLDER", type=Path, help=argparse.SUPPRESS)
-    parser.add_argument("places", nargs="*", help=argparse.SUPPRESS)
-    required = parser.parse_args()
-    if required.record is not None:
-        record(required.record, required.places)
-        return 0
-    faults = []
-    for _ in range(required.count):
-        reported = stop_once(required.seconds)
-        faults += faults_of(reported, required.seconds)
-        print(reported, flush=True)
-    print(f"{required.count} standstills of {required.seconds:.0f} s: {len(faults)} faults", *faults, sep="\n")
-    return 1 if faults else 0
+def run(asked: argparse.Namespace, _: Path) -> Iterator[tuple[str, Found]]:
+    if asked.record is not None:
+        record(asked.record, asked.places)
+        return
+    for _number in range(asked.count):
+        reported = stop_once(asked.seconds)
+        yield str(reported), Found(faults=faults_of(reported, asked.seconds))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(
+        __doc__,
+        run,
+        count=10,
+        seconds=20.0,
+        record={"metavar": "FOLDER", "type": Path, "help": HIDDEN},
+        places={"nargs": "*", "help": HIDDEN},
+    )

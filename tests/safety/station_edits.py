@@ -5,14 +5,13 @@ that was taken is noted in a file of the station's own. Afterwards the server's 
 by SQL alone: nothing of the application is asked but whether the audit's keyed hashes are right.
 """
 
-import argparse
 import json
 import random
 import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
 
@@ -26,6 +25,7 @@ from app.storage.stored import (
     StoredSession,
 )
 from core.samples import SensorInfo
+from tests.driver import Found, options
 from tests.safety.clinic_material import CODES, OPERATORS, PASSPHRASE, Clinic, Row, read_lines, rows_of
 
 FIELDS = {"patients": ("height_m", "aids"), "sessions": ("notes",), "recordings": ("condition", "is_kept", "note")}
@@ -34,19 +34,7 @@ SHARED_SETTING = "shared"
 FORGOTTEN_S = 3600
 
 
-@dataclass(slots=True)
-class Edits:
-    """What two stations did. `refused`: edits that had to be tried again."""
-
-    taken: int = 0
-    refused: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return f"{self.taken} edits taken, {self.refused} refused and tried again; {len(self.faults)} faults"
-
-
-def edit_together(clinic: Clinic, folder: Path, edits: int, seed: int) -> Edits:
+def edit_together(clinic: Clinic, folder: Path, edits: int, seed: int) -> Found:
     """All stations of `clinic` at once, so many edits in all."""
     before = _tables(clinic.address)
     notes = [folder / f"edits-{code}" for code in OPERATORS]
@@ -58,11 +46,12 @@ def edit_together(clinic: Clinic, folder: Path, edits: int, seed: int) -> Edits:
         for k, (station, code, note) in enumerate(zip(clinic.stations, OPERATORS, notes, strict=True))
     ]
     running = [subprocess.Popen(command, cwd=Path(__file__).parents[2]) for command in commands]
-    found = Edits()
+    found = Found()
     if sum(abs(one.wait(FORGOTTEN_S)) for one in running):
         found.faults.append("a station ended by itself")
     taken = [row for note in notes for row in read_lines(note)]
-    found.taken, found.refused = len(taken), sum(row["refused"] for row in taken)
+    found.count["edits taken"] = len(taken)
+    found.count["refused and tried again"] = sum(row["refused"] for row in taken)
     found.faults += _judge(before, _tables(clinic.address), taken)
     with open_library(clinic.stations[0], PASSPHRASE, OPERATORS[0]) as opened:
         found.faults += [f"audit {fault.number} {fault.what}" for fault in opened.library.audit.verify().faults]
@@ -341,15 +330,9 @@ def _settings(after: list[Row], taken: list[Row]) -> list[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("code")
-    parser.add_argument("note", type=Path)
-    parser.add_argument("--edits", type=int, required=True)
-    parser.add_argument("--seed", type=int, default=1)
-    needed = parser.parse_args()
-    editor = Editor(needed.folder, needed.code, needed.note, needed.seed)
-    for _ in range(needed.edits):
+    asked = options(__doc__, folder=Path, code=str, note=Path, edits=0, seed=1)
+    editor = Editor(asked.folder, asked.code, asked.note, asked.seed)
+    for _ in range(asked.edits):
         editor.edit()
 
 

@@ -34,12 +34,13 @@ from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import LibraryError
+from app.system.progress import nobody
 from app.workers import library_watch
 from app.workers.library_watch import LibraryWatch
 from core.session import Recording, RecordingKind
 from devices.decoders import DECODERS
 from devices.simulation.replay import ReplaySource
-from tests.safety.clinic_material import PASSPHRASE, silent
+from tests.safety.clinic_material import PASSPHRASE
 from tests.safety.journal_material import NO_ROOM_ASKED
 from tests.safety.live_material import numbered_session
 
@@ -83,9 +84,9 @@ def recover_all(opened: OpenedLibrary) -> list[str]:
     for one in find_interrupted(opened):
         try:
             if one.stored is None:
-                adopt_home(opened, one, silent)
+                adopt_home(opened, one, nobody)
             else:
-                recover(opened, one, silent)
+                recover(opened, one, nobody)
         except (JournalRefusedError, LibraryError) as refusal:
             refused.append(f"{one.recording_id}: {refusal}")
     return refused

@@ -13,7 +13,6 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from dataclasses import dataclass, field
 from itertools import cycle
 from pathlib import Path
 from uuid import UUID
@@ -29,36 +28,18 @@ from app.storage.opened import held_alone, open_library
 from app.storage.stored import LibraryError, PlacedSensor
 from core.samples import IntArray, SensorInfo
 from core.session import Patient, Session
+from tests.driver import Found
 from tests.safety.clinic_material import OPERATORS, PASSPHRASE, Clinic, OwnServer, Row, read_lines, rows_of
 from tests.safety.live_material import LOOP, numbered_session
 from tests.safety.station_life import ADOPTING, HANDING_OVER, RECORDING, STOP, is_at, read_all_of, recover_all
 
 MOMENTS = {RECORDING: "recording", HANDING_OVER: "handing over", ADOPTING: "adopting", -1: "at any instant"}
+STOPPED = "times the server was stopped"
 LOOKED_S, FORGOTTEN_S = 0.002, 180.0
 REQUIRED_S = 3.0  # so long a moment to kill at is waited for
 
 
-@dataclass(slots=True)
-class Outages:
-    """`empty`: killed before anything was in the journal, which then belongs to nobody."""
-
-    recordings: int = 0
-    servers_stopped: int = 0
-    places_taken: int = 0
-    kills: Counter[str] = field(default_factory=Counter)
-    empty: int = 0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        kills = ", ".join(f"{count} {moment}" for moment, count in sorted(self.kills.items()))
-        return (
-            f"{self.recordings} recordings; server stopped {self.servers_stopped} times, place taken "
-            f"{self.places_taken} times, stations killed {sum(self.kills.values())} times ({kills}); "
-            f"{self.empty} journals without a sample; {len(self.faults)} faults"
-        )
-
-
-def live_through_outages(clinic: Clinic, server: OwnServer, folder: Path, outage_s: float, seed: int) -> Outages:
+def live_through_outages(clinic: Clinic, server: OwnServer, folder: Path, outage_s: float, seed: int) -> Found:
     """For `outage_s` seconds; then all has to come to rest."""
     storm = _Storm(clinic, server, folder, seed)
     storm.rage(outage_s)
@@ -72,7 +53,7 @@ class _Storm:
     """What happens to a clinic, and what was on its stations' disks meanwhile."""
 
     def __init__(self, clinic: Clinic, server: OwnServer, folder: Path, seed: int) -> None:
-        self.clinic, self.found, self.session_id = clinic, Outages(), _visit(clinic)
+        self.clinic, self.found, self.session_id = clinic, Found(), _visit(clinic)
         self.sha256_of: dict[str, str] = {}
         self.noted = folder / "notes"
         self.noted.mkdir()
@@ -95,7 +76,7 @@ class _Storm:
         due_s = {
             what: time.monotonic() + self._rng.uniform(2.0, 6.0) for what in (self._switch, self._take, self._kill)
         }
-        while time.monotonic() < end_s or not self.found.servers_stopped:  # on a busy machine a kill takes seconds
+        while time.monotonic() < end_s or not self.found.count[STOPPED]:  # on a busy machine a kill takes seconds
             what = min(due_s, key=lambda one: due_s[one])
             time.sleep(max(0.0, due_s[what] - time.monotonic()))
             what()
@@ -136,7 +117,7 @@ class _Storm:
     def _switch(self) -> None:
         if self._is_up:
             self._server.kill()
-            self.found.servers_stopped += 1
+            self.found.count[STOPPED] += 1
         else:
             self._server.start()
         self._is_up = not self._is_up
@@ -144,7 +125,7 @@ class _Storm:
     def _take(self) -> None:
         if self._is_place_there:
             self.clinic.place.rename(self._away)
-            self.found.places_taken += 1
+            self.found.count["times the place was taken"] += 1
         else:
             self._away.rename(self.clinic.place)
         self._is_place_there = not self._is_place_there
@@ -166,7 +147,7 @@ class _Storm:
             time.sleep(self._rng.uniform(0.0, 0.02))
             os.kill(self._living[code], signal.SIGKILL)
         self._end(code, is_killed=True)
-        self.found.kills[MOMENTS[moment]] += 1
+        self.found.count[f"killed {MOMENTS[moment]}"] += 1
 
     def _end(self, code: str, *, is_killed: bool = False) -> None:
         """Kill a station, unless it was, and start it again."""
@@ -196,7 +177,7 @@ def _visit(clinic: Clinic) -> UUID:
         return visit.id
 
 
-def _settle(clinic: Clinic, found: Outages) -> None:
+def _settle(clinic: Clinic, found: Found) -> None:
     """Each station is started twice more, without haste."""
     for code, station in zip(OPERATORS, clinic.stations, strict=True):
         for _ in range(2):
@@ -218,10 +199,10 @@ def _judge(clinic: Clinic, storm: _Storm) -> None:
     )
     rows = Counter(row["file"] for row in journals)
     kept_as = {row["file"]: row["kept_as"] for row in journals}
-    found.recordings = len(journals)
+    found.count["recordings"] = len(journals)
     for name, sha256 in storm.sha256_of.items():
         if not rows[name]:
-            found.empty += 1
+            found.count["killed before anything was in the journal"] += 1
             if _has_samples(clinic, name):
                 found.faults.append(f"{name} is lost: no row tells of it")
         elif rows[name] > 1 or kept_as[name] != sha256 + SUFFIX:
@@ -244,7 +225,7 @@ def _lines(path: Path) -> list[Row]:
     return [] if path.suffix in (".moments", ".wish") or path.name == STOP else read_lines(path)
 
 
-def _judge_place(clinic: Clinic, found: Outages) -> None:
+def _judge_place(clinic: Clinic, found: Found) -> None:
     """In the shared place is one file for each journal, which is what its name states, and nothing else."""
     required = Counter(row["kept_as"] for row in rows_of(clinic.address, "SELECT kept_as FROM journals"))
     there = {path.name for path in clinic.place.iterdir() if path.suffix == SUFFIX}
@@ -256,7 +237,7 @@ def _judge_place(clinic: Clinic, found: Outages) -> None:
             found.faults.append(f"{name} is not what its name says")
 
 
-def _judge_reading(clinic: Clinic, session_id: UUID, found: Outages) -> None:
+def _judge_reading(clinic: Clinic, session_id: UUID, found: Found) -> None:
     """Every station reads all of them, and each sample follows from the one before."""
     for code, station in zip(OPERATORS, clinic.stations, strict=True):
         with open_library(station, PASSPHRASE, code) as opened:

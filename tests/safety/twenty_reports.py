@@ -16,10 +16,9 @@ import json
 import math
 import os
 import re
-import sys
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 from statistics import fmean
@@ -43,6 +42,7 @@ from core.session import RecordingKind, Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.benchmarks.null_differences import real_walks
+from tests.driver import Found, drive
 
 BANDS = Path(__file__).parents[2] / "resources" / "reference_bands"
 MADE_AT = datetime(2026, 11, 23, 10, 30, tzinfo=UTC)
@@ -55,16 +55,6 @@ MONTHS = "Jan|Feb|Mar|Mär|Apr|May|Mai|Jun|Jul|Aug|Sep|Oct|Okt|Nov|Dec|Dez"
 DATES = re.compile(rf"\d{{1,2}}\.? (?:{MONTHS})\w* ?(?:\d{{4}})?")
 ON_CURVES = re.compile(r"^(?:[LR] \u2212?\d|toe-off|.*: \d+\u00b0|.* (?:less|more) than )|\u00b0$")
 STATED_OF_METHOD = {"1", "2", "3"}  # "2 SD", visit 1, band [1]
-
-
-@dataclass(slots=True)
-class Trial:
-    """What was found of one report; `faults` are sentences."""
-
-    name: str
-    pages: int = 0
-    sentences: int = 0
-    faults: list[str] = field(default_factory=list)
 
 
 def sessions() -> Iterator[tuple[str, ReportRequest]]:
@@ -292,15 +282,15 @@ def _nodes(node: Any) -> Iterator[Any]:
             yield from _nodes(node.K)
 
 
-def tried(name: str, request: ReportRequest, pictures: Path | None = None) -> Trial:
+def tried(name: str, request: ReportRequest, pictures: Path | None = None) -> Found:
     """One report, against its files."""
-    trial, added = Trial(name), len(request.walks) > 1 or request.earlier is not None
+    trial, added = Found(), len(request.walks) > 1 or request.earlier is not None
     pdf, data = make_report(request), report_data(request)
     pages = ReportPreview().pages(request, PPI)
-    trial.pages = len(pages)
+    trial.count["pages"] = len(pages)
     most = PAGES_OF_ONE_WALK + added + bool(request.course)
-    if trial.pages > most:
-        trial.faults.append(f"{trial.pages} pages, {most} wanted")
+    if len(pages) > most:
+        trial.faults.append(f"{len(pages)} pages, {most} wanted")
     trial.faults += structure_faults(pdf)
     for number, share in enumerate(ink_heights(pages), start=1):
         if share < LEAST_INK:
@@ -312,7 +302,7 @@ def tried(name: str, request: ReportRequest, pictures: Path | None = None) -> Tr
         known = numbers_in_files(folder) | numbers_of_bands()
     known |= _of_earlier_visits(request)
     stated = sentences_of(data)
-    trial.sentences = len(stated)
+    trial.count["sentences"] = len(stated)
     trial.faults += contradictions(data["first_page"])
     for sentence in stated:
         if unknown := unknown_numbers(sentence, known):
@@ -340,22 +330,12 @@ def _of_earlier_visits(request: ReportRequest) -> set[float]:
     return found
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--pictures", type=Path, help="put every page there as PNG")
-    pictures: Path | None = parser.parse_args().pictures
-    if pictures is not None:
-        pictures.mkdir(parents=True, exist_ok=True)
-    trials = []
+def run(asked: argparse.Namespace, _: Path) -> Iterator[tuple[str, Found]]:
+    if asked.pictures is not None:
+        asked.pictures.mkdir(parents=True, exist_ok=True)
     for name, request in sessions():
-        trials.append(trial := tried(name, request, pictures))
-        print(f"{name}: {trial.pages} pages, {trial.sentences} sentences, {len(trial.faults)} faults", flush=True)
-        for fault in trial.faults:
-            print(f"  - {fault}", flush=True)
-    faults = sum(len(trial.faults) for trial in trials)
-    print(f"{len(trials)} sessions, {sum(trial.sentences for trial in trials)} sentences, {faults} faults")
-    sys.exit(1 if faults else 0)
+        yield name, tried(name, request, asked.pictures)
 
 
 if __name__ == "__main__":
-    main()
+    drive(__doc__, run, pictures={"type": Path, "help": "put every page there as PNG"})

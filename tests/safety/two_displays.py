@@ -17,12 +17,9 @@ the walk is
 After each the database is looked into. Pictures of every stop go into OUT, a folder for each station.
 """
 
-import argparse
-import importlib
 import sys
 import tempfile
 import time
-import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -31,15 +28,15 @@ from subprocess import PIPE, Popen
 from typing import Any
 
 import numpy as np
-from sqlalchemy import create_engine, make_url, text
 
 from app.storage.clinic.joining import join
-from app.storage.clinic.station import driver_url
 from app.storage.exchange import session_with_samples
 from app.storage.opened import open_library
 from core.session import RecordingKind
 from devices.decoders import DECODERS
 from tests.benchmarks.own_display import own_display, own_environment
+from tests.driver import options
+from tests.safety.clinic_material import OwnServer, Row, own_server, rows_of
 from tests.tours.tour import INSIDE, WINDOW, Application, TourError, lead
 from tests.tours.tour_stops import (
     DIGITS,
@@ -71,26 +68,13 @@ class WrongError(Exception):
 
 @dataclass(slots=True)
 class Server:
-    """A PostgreSQL of the proof's own, with an empty database."""
+    """A PostgreSQL of the proof's own, and its one database."""
 
-    postgres: Any
+    postgres: OwnServer
     address: str
 
-    def stop(self) -> None:
-        """At once, as when its computer fails."""
-        commands = importlib.import_module("pgserver._commands")
-        commands.pg_ctl(["-m", "immediate", "stop"], pgdata=self.postgres.pgdata, user=self.postgres.system_user)
-
-    def start(self) -> None:
-        self.postgres.ensure_postgres_running()
-
-    def rows(self, query: str, **values: object) -> list[dict[str, Any]]:
-        engine = create_engine(driver_url(self.address))
-        try:
-            with engine.connect() as connection:
-                return [dict(row) for row in connection.execute(text(query), values).mappings()]
-        finally:
-            engine.dispose()
+    def rows(self, query: str) -> list[Row]:
+        return rows_of(self.address, query)
 
 
 @dataclass(slots=True)
@@ -112,13 +96,7 @@ class StationOnScreen:
 
 
 def prove(out: Path) -> Iterator[str]:
-    """Go through all steps; gives a line for each.
-
-    Raises
-    ------
-    WrongError
-        A step is not as it has to be.
-    """
+    """Go through all steps; gives a line for each."""
     with (
         tempfile.TemporaryDirectory(prefix="gaitwright-clinic-") as folder,
         _server() as server,
@@ -146,7 +124,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
             (
                 "to Address of the clinic",
                 f"type {server.address}",
-                "to Place of the recordings",
+                "to Shared storage that all workstations",
                 f"type {place}",
                 "to Move to the clinic",
             ),
@@ -198,7 +176,7 @@ def _review_elsewhere(one: StationOnScreen, two: StationOnScreen, server: Server
     )
     _wait_until(lambda: not _waiting(server), "all recordings are handed over")
     two.lead(
-        Stop("20-appeared", offers("New session for DEMO-7"), ("to Sessions", "press Down", "press Return")),
+        Stop("20-appeared", offers("New session for DEMO-7"), ("to Visits", "press Down", "press Return")),
         Stop("21-reviewed", offers("Legs", "Data"), patience_s=PATIENCE_S, lingers_s=2.0),
     )
     found = server.rows("SELECT kind, state FROM recordings ORDER BY kind")
@@ -211,7 +189,7 @@ def _change_the_same(one: StationOnScreen, two: StationOnScreen, server: Server)
     """Both have the patient's page open before either changes it."""
     before = _patient(server)
     one.lead(
-        Stop("40-home", offers("New session for DEMO-7"), ("to Sessions", "press Down", "press Return")),
+        Stop("40-home", offers("New session for DEMO-7"), ("to Visits", "press Down", "press Return")),
         Stop("41-session", offers("Legs"), ("press ctrl+1",), patience_s=PATIENCE_S),
         Stop("42-patient", at_step("PatientStep"), ("to Body height",)),
     )
@@ -254,7 +232,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
         Stop("58-walking", is_recording, lingers_s=3.0),
     )
     began_s = time.monotonic()
-    server.stop()
+    server.postgres.kill()
     slowest_s = _watch(one, AWAY_S)
     one.lead(Stop("59-away", lambda seen: any("does not respond" in one for one in (seen.banner, *seen.words))))
     two.lead(Stop("60-away", lambda seen: any("does not respond" in one for one in (seen.banner, *seen.words))))
@@ -262,7 +240,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
     walked_s = time.monotonic() - began_s
     slowest_s = max(slowest_s, _watch(one, 5.0))
     one.lead(Stop("60-stopped", lambda seen: not seen.states("Stop walk")))
-    server.start()
+    server.postgres.start()
     one.lead(
         Stop("61-back", lambda seen: not any("does not respond" in one for one in (seen.banner, *seen.words))),
         Stop("62-asked", offers("Keep 1"), ("press k",), patience_s=PATIENCE_S, lingers_s=2.0),
@@ -274,7 +252,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
     _wait_until(lambda: not _waiting(server), "what was recorded meanwhile is handed over")
     two.lead(
         Stop("61-leave", at_step("PatientStep"), ("click All patients",), patience_s=PATIENCE_S),
-        Stop("62-home", offers("New session for DEMO-7"), ("to Sessions", "press Home", "press Return"), lingers_s=3.0),
+        Stop("62-home", offers("New session for DEMO-7"), ("to Visits", "press Home", "press Return"), lingers_s=3.0),
         Stop("63-reviewed", offers("Legs", "Data"), patience_s=PATIENCE_S, lingers_s=2.0),
     )
     samples, longest_s = _read_walk(server, folder / "third", walked_s)
@@ -316,7 +294,7 @@ def _watch(station: StationOnScreen, for_s: float) -> float:
 
 
 def _patient(server: Server) -> dict[str, Any]:
-    (row,) = server.rows("SELECT version, height_m FROM patients WHERE code = :code", code=CODE)
+    (row,) = server.rows(f"SELECT version, height_m FROM patients WHERE code = '{CODE}'")
     return row
 
 
@@ -349,20 +327,9 @@ def _expect(is_so: bool, what: str) -> None:
 
 @contextmanager
 def _server() -> Iterator[Server]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it minds that a machine without desktop has no folder for sockets
-        pgserver = importlib.import_module("pgserver")
-    with tempfile.TemporaryDirectory(prefix="pg") as folder:  # a socket's path has 107 letters at most
-        postgres = pgserver.get_server(folder, cleanup_mode="stop")
-        try:
-            address = make_url(postgres.get_uri())
-            engine = create_engine(driver_url(postgres.get_uri()), isolation_level="AUTOCOMMIT")
-            with engine.connect() as connection:
-                connection.execute(text("CREATE DATABASE clinic"))
-            engine.dispose()
-            yield Server(postgres, address.set(database="clinic").render_as_string(hide_password=False))
-        finally:
-            postgres.cleanup()
+    # a short path: a socket's has 107 letters at most
+    with tempfile.TemporaryDirectory(prefix="pg") as folder, own_server(Path(folder) / "pg") as postgres:
+        yield Server(postgres, postgres.database())
 
 
 @contextmanager
@@ -393,10 +360,8 @@ def _started(environment: Mapping[str, str]) -> Popen[str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("out", metavar="OUT", type=Path, help="the folder for the pictures")
     try:
-        for line in prove(parser.parse_args().out.resolve()):
+        for line in prove(options(__doc__, out=(Path, "the folder for the pictures")).out.resolve()):
             print(f"- {line}", flush=True)
     except WrongError as wrong:
         print(wrong)

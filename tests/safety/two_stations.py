@@ -11,47 +11,38 @@ back while being killed (`moving_kills`).
 
 import argparse
 import logging
-import tempfile
-import time
+from collections.abc import Iterator
 from pathlib import Path
 
+from tests.driver import Found, drive
 from tests.safety.clinic_material import make_clinic, own_server
 from tests.safety.moving_kills import move_killed
 from tests.safety.station_edits import edit_together
 from tests.safety.station_outages import live_through_outages
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--edits", type=int, default=10_000, help="of both stations")
-    parser.add_argument("--outage", type=float, default=600.0, metavar="S", help="how long things go wrong")
-    parser.add_argument("--moves", type=int, default=200, metavar="KILLS", help="of moves there and back")
-    parser.add_argument("--seed", type=int, default=1)
-    required = parser.parse_args()
+def run(asked: argparse.Namespace, folder: Path) -> Iterator[tuple[str, Found]]:
     logging.disable(logging.CRITICAL)  # a server that is gone is what this is about
-    faults = []
-    # a short path: a server's socket has 107 letters at most
-    with tempfile.TemporaryDirectory(prefix="t15") as name, own_server(Path(name) / "pg") as server:
-        Path(name).chmod(0o755)  # for the server's own user
-        for what, work in (
-            ("edits", lambda folder: edit_together(make_clinic(folder, server), folder, required.edits, required.seed)),
-            (
-                "outage",
-                lambda folder: live_through_outages(
-                    make_clinic(folder, server), server, folder, required.outage, required.seed
-                ),
-            ),
-            ("moves", lambda folder: move_killed(server, folder, required.moves, required.seed)),
-        ):
-            if getattr(required, what):
-                folder, begin_s = Path(name) / what, time.monotonic()
-                folder.mkdir()
-                found = work(folder)
-                print(f"{what}: {found}, in {time.monotonic() - begin_s:.0f} s", flush=True)
-                faults += found.faults
-    print(*(f"- {fault}" for fault in faults), sep="\n")
-    raise SystemExit(bool(faults))
+    folder.chmod(0o755)  # for the server's own user
+    edits, outage, moves = (folder / name for name in ("edits", "outage", "moves"))
+    for one in (edits, outage, moves):
+        one.mkdir()
+    with own_server(folder / "pg") as server:
+        if asked.edits:
+            yield "edits", edit_together(make_clinic(edits, server), edits, asked.edits, asked.seed)
+        if asked.outage:
+            clinic = make_clinic(outage, server)
+            yield "outage", live_through_outages(clinic, server, outage, asked.outage, asked.seed)
+        if asked.moves:
+            yield "moves", move_killed(server, moves, asked.moves, asked.seed)
 
 
 if __name__ == "__main__":
-    main()
+    drive(
+        __doc__,
+        run,
+        edits=(10_000, "of both stations"),
+        outage=(600.0, "for how many seconds things go wrong"),
+        moves=(200, "kills of moves there and back"),
+        seed=1,
+    )

@@ -4,25 +4,23 @@ report.
 Of `source_vanishes.py` and `port_vanishes.py`, which say what is pulled out and what a journal has to hold then.
 """
 
-import argparse
 import random
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-import numpy as np
-
 from app.acquisition.acquisition import Acquisition
+from tests.driver import Found
 from tests.safety.journal_material import ID
 from tests.safety.live_material import open_journal
 
 AT_ONCE = 4  # in each recording of six
 LATEST_S, AWAY_S = 1.0, (0.05, 1.5)
 BACK_S, PATIENCE_S = 3.0, 30.0
+BACK = "back after, ms"  # from the return of a source or a port to the sensor's next sample
 
 
 class Pulled(Protocol):
@@ -34,20 +32,6 @@ class Pulled(Protocol):
 
 FaultsIn = Callable[[Path, Collection[str]], list[str]]
 """What is wrong with a journal in which these sensors vanished once each."""
-
-
-@dataclass(slots=True)
-class Vanished:
-    """`back_ms` from the return of a source or a port to the sensor's next sample."""
-
-    back_ms: list[float] = field(default_factory=list)
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{len(self.back_ms)} vanished: {len(self.faults)} faults; back after "
-            f"{np.median(self.back_ms):.0f} ms (median), {max(self.back_ms):.0f} ms (max)"
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +50,15 @@ class Pulling:
     earliest_s: float
     settles_s: float
 
-    def often(self, folder: Path, count: int, seed: int) -> Vanished:
+    def often(self, folder: Path, count: int, seed: int) -> Found:
         """Recordings until so many have vanished, at moments of their own."""
-        rng, vanished = random.Random(seed), Vanished()
-        while len(vanished.back_ms) < count:
-            chosen = rng.sample(list(self.sensors), min(AT_ONCE, count - len(vanished.back_ms)))
+        rng, vanished = random.Random(seed), Found()
+        while len(vanished.figures[BACK]) < count:
+            chosen = rng.sample(list(self.sensors), min(AT_ONCE, count - len(vanished.figures[BACK])))
             self._recorded(folder, chosen, rng, vanished)
         return vanished
 
-    def _recorded(self, folder: Path, chosen: list[str], rng: random.Random, vanished: Vanished) -> None:
+    def _recorded(self, folder: Path, chosen: list[str], rng: random.Random, vanished: Found) -> None:
         self.acquisition.record(open_journal(folder, ID))
         plans = [(name, rng.uniform(self.earliest_s, LATEST_S), rng.uniform(*AWAY_S)) for name in chosen]
         threads = [threading.Thread(target=self._once, args=(*plan, vanished)) for plan in plans]
@@ -87,7 +71,7 @@ class Pulling:
         vanished.faults += self.faults_in(summary.path, chosen)
         summary.path.unlink()
 
-    def _once(self, name: str, after_s: float, away_s: float, vanished: Vanished) -> None:
+    def _once(self, name: str, after_s: float, away_s: float, vanished: Found) -> None:
         time.sleep(after_s)
         self.sensors[name].vanish()
         time.sleep(away_s)
@@ -97,23 +81,9 @@ class Pulling:
         while self._received(name) == before and time.monotonic() - back_s < PATIENCE_S:
             time.sleep(0.005)
         took_s = time.monotonic() - back_s
-        vanished.back_ms.append(1000 * took_s)
+        vanished.figures[BACK].append(1000 * took_s)
         if took_s > BACK_S:
             vanished.faults.append(f"{name}: back after {took_s:.1f} s")
 
     def _received(self, name: str) -> int:
         return self.acquisition.status()[name].counts.received
-
-
-def run(description: str | None, vanish_often: Callable[[Path, int, int], Vanished]) -> int:
-    """As a script: what was found, and whether something is wrong."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    required = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="gaitwright-vanish-") as folder:
-        vanished = vanish_often(Path(folder), required.count, required.seed)
-    for fault in vanished.faults:
-        print(fault)
-    print(vanished)
-    return 1 if vanished.faults else 0

@@ -10,7 +10,6 @@ sensors and recording runs faster; frames, disk and processor do not, and the es
 preview.
 """
 
-import argparse
 import resource
 import sys
 import time
@@ -24,12 +23,12 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from app.wizard.step import StepId
-from core.body import LEG_SITES
 from core.samples import ImuBlock
 from core.session import RecordingKind
 from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource
 from devices.simulation.walker import simulate
-from tests.safety.window_material import PATIENCE_S, grown, held, linger, opened_window, wait
+from tests.driver import options
+from tests.safety.window_material import PATIENCE_S, begun_visit, grown, held, linger, opened_window, put_on, wait
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -44,20 +43,9 @@ ANALYSED_WITHIN_S = 3600.0
 
 def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]":
     """Go from home to a walk that is being recorded."""
-    assert window.home is not None
-    window.home.session_requested.emit(window.home.patients.patient)
-    wizard = window.wizard
-    assert wizard is not None
-    visit = wizard.visit
-    assert visit is not None
-    wait(application, lambda: visit.patient.stored is not None)
-    wizard.go_to(StepId.SENSORS)
-    wait(application, lambda: visit.session is not None)
-    visit.sensors.search(visit.choices[0])
-    wait(application, lambda: visit.sensors.acquisition is not None)
+    wizard, visit = begun_visit(application, window)
     linger(application, 4.0)
-    assert visit.sensors.acquisition is not None
-    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
+    put_on(visit)
     wizard.go_to(StepId.STAND_STILL)
     linger(application, 0.5)
     wizard.press_primary()
@@ -94,10 +82,7 @@ def faults_of(block: ImuBlock, seconds: float) -> list[str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--hours", type=float, default=2.0)
-    parser.add_argument("--speed", type=float, default=1.0)
-    required = parser.parse_args()
+    required = options(__doc__, hours=2.0, speed=1.0)
     seconds = 3600.0 * required.hours
     session = simulate(replace(DEMONSTRATION_SESSION, rate_hz=RATE_HZ)).session
     source = ReplaySource(session, finishes=True, speed=required.speed)

@@ -6,14 +6,13 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from app.theme.current import load_fonts
-
-os.environ["QT_QPA_PLATFORM"] = "offscreen"
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from PySide6.QtCore import QEvent, QObject, QSettings
@@ -22,9 +21,18 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.system.settings import Settings
+from app.theme.current import load_fonts
 from app.wizard.sensors import sources
+from app.wizard.step import StepId
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
+from core.body import LEG_SITES, Site
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+
+if TYPE_CHECKING:
+    from app.wizard.visit import Visit
+    from app.wizard.wizard import Wizard
 
 PATIENCE_S = 60.0
 FILLED_S = 300.0  # on a busy machine
@@ -71,14 +79,16 @@ def grown(before: Held, after: Held) -> list[str]:
     return names
 
 
-def wait(application: QApplication, until: Callable[[], bool], patience_s: float = PATIENCE_S) -> None:
+def wait(
+    application: QApplication, until: Callable[[], bool], patience_s: float = PATIENCE_S, every_s: float = 0.005
+) -> None:
     end_s = time.monotonic() + patience_s
     while not until():
         if time.monotonic() > end_s:
             raise TimeoutError("the visit does not go on")
         application.processEvents()
         application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)  # as `exec` does of itself
-        time.sleep(0.005)
+        time.sleep(every_s)
 
 
 def linger(application: QApplication, seconds: float) -> None:
@@ -86,27 +96,81 @@ def linger(application: QApplication, seconds: float) -> None:
     wait(application, lambda: time.monotonic() >= end_s, seconds + PATIENCE_S)
 
 
+def application() -> QApplication:
+    """Made as the program makes its own."""
+    sys.setswitchinterval(SWITCH_S)
+    made = QApplication([])
+    made.setApplicationName("Gaitwright")
+    made.setStyle("Fusion")
+    load_fonts()
+    return made
+
+
+def window_in(made: QApplication, library: Path) -> MainWindow:
+    """The window of a user whose library is there, and whose settings lie beside it."""
+    settings = Settings(QSettings(str(library.parent / "settings.ini"), QSettings.Format.IniFormat))
+    window = MainWindow(settings, library)
+    garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
+    window.preparing.done.connect(garbage.pass_over_imported)
+    window.show()
+    return window
+
+
+def offer(name: str, open_sensors: Callable[[], Acquisition]) -> None:
+    """Let these sensors be the only ones that can be chosen; before the wizard takes its choices."""
+    patient = SourceChoice(name, name.capitalize(), open_sensors, is_simulated=True)
+    sources.choices = lambda: (patient,)
+
+
+def fast_patient(sites: tuple[Site, ...] = LEG_SITES, speed: float = 20.0) -> Callable[[], Acquisition]:
+    """A patient of two walks whose time runs faster than ours."""
+    played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
+    session = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+
+    def make() -> Acquisition:
+        source = ReplaySource(session, speed=speed)
+        return Acquisition([source], source.now_ns)
+
+    return make
+
+
 @contextmanager
 def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QApplication, MainWindow]]:
     """The window at home in the demonstration's library, where such sensors can be chosen."""
-    patient = SourceChoice("patient", "Patient", open_sensors, is_simulated=True)
-    sources.choices = lambda: (patient,)  # before the wizard takes it from there
-    sys.setswitchinterval(SWITCH_S)
-    application = QApplication([])
-    application.setStyle("Fusion")
-    load_fonts()
+    offer("patient", open_sensors)
+    made = application()
     with tempfile.TemporaryDirectory() as folder:
-        settings = Settings(QSettings(f"{folder}/settings.ini", QSettings.Format.IniFormat))
-        window = MainWindow(settings, Path(folder) / "library")
-        garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
-        window.preparing.done.connect(garbage.pass_over_imported)
-        window.show()
+        window = window_in(made, Path(folder) / "library")
         window.open_demonstration()
-        wait(application, lambda: window.home is not None and window.home.isVisible())
-        wait(application, lambda: window.preparing.is_idle)
-        wait(application, lambda: window.home is not None and window.home.patients.patient is not None)
+        wait(made, lambda: window.home is not None and window.home.isVisible())
+        wait(made, lambda: window.preparing.is_idle)
+        wait(made, lambda: window.home is not None and window.home.patients.patient is not None)
         # what fills the demonstration beside the screen is not what is looked at
-        wait(application, lambda: window.home is not None and not window.home.filling.is_busy, FILLED_S)
-        yield application, window
+        wait(made, lambda: window.home is not None and not window.home.filling.is_busy, FILLED_S)
+        yield made, window
         window.close()
         window.finish()
+
+
+def begun_visit(made: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]":
+    """From home to a session of the chosen patient, whose sensors are being looked for."""
+    assert window.home is not None
+    window.home.session_requested.emit(window.home.patients.patient)
+    wizard = window.wizard
+    assert wizard is not None
+    visit = wizard.visit
+    assert visit is not None
+    wait(made, lambda: visit.patient.stored is not None)
+    wizard.go_to(StepId.SENSORS)
+    wait(made, lambda: visit.session is not None)
+    visit.sensors.search(visit.choices[0])
+    wait(made, lambda: visit.sensors.acquisition is not None)
+    return wizard, visit
+
+
+def put_on(visit: "Visit", sites: Sequence[Site] = LEG_SITES) -> Acquisition:
+    """The sensors at their sites, in their order."""
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    visit.sensors.assign_all(dict(zip(acquisition.sensors, sites, strict=True)))
+    return acquisition

@@ -8,7 +8,6 @@ reported: memory, threads, open files, objects of Qt below the window and of Pyt
 which a fault in a binding would use up. It ends with 1 if anything grew by more than it may.
 """
 
-import argparse
 import sys
 import threading
 from dataclasses import replace
@@ -19,13 +18,13 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from app.wizard.step import StepId
-from core.body import LEG_SITES
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
-from tests.safety.window_material import grown, held, linger, opened_window, wait
+from tests.driver import options
+from tests.safety.window_material import begun_visit, grown, held, linger, opened_window, put_on, wait
 
 if TYPE_CHECKING:
-    from app.wizard.visit import Visit
+    pass
 
 SETTLED_AFTER = 5
 LISTENS_S = 0.5
@@ -33,19 +32,8 @@ LISTENS_S = 0.5
 
 def make_visit(application: QApplication, window: MainWindow) -> None:
     """Begin a session, put six sensors on, look at every page that may be entered, and leave."""
-    assert window.home is not None
-    window.home.session_requested.emit(window.home.patients.patient)
-    wizard = window.wizard
-    assert wizard is not None
-    visit: Visit | None = wizard.visit
-    assert visit is not None
-    wait(application, lambda: visit.patient.stored is not None)
-    wizard.go_to(StepId.SENSORS)
-    wait(application, lambda: visit.session is not None)
-    visit.sensors.search(visit.choices[0])
-    wait(application, lambda: visit.sensors.acquisition is not None)
-    assert visit.sensors.acquisition is not None
-    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
+    wizard, visit = begun_visit(application, window)
+    put_on(visit)
     linger(application, LISTENS_S)
     for step in (StepId.STAND_STILL, StepId.WALKING, StepId.RESULTS, StepId.REPORT):
         wizard.go_to(step)
@@ -56,9 +44,7 @@ def make_visit(application: QApplication, window: MainWindow) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--visits", type=int, default=30)
-    visits = parser.parse_args().visits
+    visits = options(__doc__, visits=30).visits
     played = (Standing(duration_s=5.0), FreeMotion(duration_s=5.0), Walk(strides=6))
     session = simulate(replace(DEMONSTRATION, recordings=played)).session
     with opened_window(lambda: Acquisition([ReplaySource(session)])) as (application, window):

@@ -7,7 +7,6 @@ as fast as ours. When the point is reached it prints one line of JSON, what was 
 waits.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -16,29 +15,21 @@ from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 
-from app.theme.current import load_fonts
-
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from PySide6.QtCore import QSettings
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.acquisition.acquisition import Acquisition
-from app.main_window import SWITCH_S, MainWindow
-from app.system.settings import Settings
+from app.main_window import MainWindow
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
-from app.wizard.sensors import sources
 from app.wizard.step import StepId
-from app.wizard.worn_sensors import SourceChoice
 from core.body import LEG_SITES, Joint, Side, Site
 from core.session import RecordingKind
-from devices.simulation.replay import ReplaySource
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
-from tests.safety.window_material import linger, wait
+from tests.driver import options
+from tests.safety.window_material import application, begun_visit, fast_patient, linger, offer, put_on, wait, window_in
 
 SPEED = 20.0
 WALKED_S = 14.0
@@ -64,21 +55,11 @@ class Guide:
     def begin(self, library: Path, passphrase: str, sites: tuple[Site, ...]) -> None:
         """Open the library, begin a session with its patient, put the sensors on, stand and move."""
         window = self._window
-        window.controller.open(library, passphrase)
+        window.controller.open(lambda holder: holder.open(library, passphrase))
         self._wait(lambda: window.home is not None and window.home.patients.patient is not None)
-        assert window.home is not None
-        window.home.session_requested.emit(window.home.patients.patient)
-        assert window.wizard is not None
-        assert window.wizard.visit is not None
-        self.wizard, self.visit = window.wizard, window.wizard.visit
-        self._wait(lambda: self.visit.patient.stored is not None)
-        self.wizard.go_to(StepId.SENSORS)
-        self._wait(lambda: self.visit.session is not None)
-        self.visit.sensors.search(self.visit.choices[0])
+        self.wizard, self.visit = begun_visit(self._application, window)
         self._wait(lambda: len(self.visit.sensors.status) == len(sites))
-        assert self.visit.sensors.acquisition is not None
-        self.acquisition = self.visit.sensors.acquisition
-        self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, sites, strict=True)))
+        self.acquisition = put_on(self.visit, sites)
         self.wizard.go_to(StepId.STAND_STILL)
         self._wait(lambda: self.visit.session is not None and bool(self.visit.session.placements))
         self._record(RecordingKind.STANDING, 6.0)
@@ -191,30 +172,16 @@ def lead(guide: Guide, point: Point) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("library", type=Path)
-    parser.add_argument("passphrase")
-    parser.add_argument("point", type=Point)
-    parser.add_argument("--pelvis", action="store_true", help="with a seventh sensor")
-    required = parser.parse_args()
-    played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
+    required = options(__doc__, library=Path, passphrase=str, point=Point, pelvis=(False, "with a seventh sensor"))
     sites = tuple(Site) if required.pelvis else LEG_SITES
-    session = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
-    source = ReplaySource(session, speed=SPEED)
-    fast = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
-    sources.choices = lambda: (fast,)  # before the wizard takes it from there
-    sys.setswitchinterval(SWITCH_S)
-    application = QApplication([])
-    application.setStyle("Fusion")
-    load_fonts()
-    settings = Settings(QSettings(str(required.library.parent / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(settings, required.library)
-    window.show()
-    guide = Guide(application, window)
+    offer("fast", fast_patient(sites, SPEED))
+    made = application()
+    window = window_in(made, required.library)
+    guide = Guide(made, window)
     guide.begin(required.library, required.passphrase, sites)
     lead(guide, required.point)
     guide.show_message()
-    linger(application, WAITS_S)
+    linger(made, WAITS_S)
     return 1
 
 

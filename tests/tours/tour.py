@@ -174,11 +174,6 @@ def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequ
     ----------
     looks
         Of the pictures: theme, window and size of everything, as "dark 1280x800@100". The first is worked with.
-
-    Raises
-    ------
-    TourError
-        A stop was not reached in time, or the session took too long.
     """
     led = Led()
     application.ask(f"look {looks[0]}")

@@ -6,7 +6,6 @@ Public recordings are made into session folders in a temporary folder and go thr
 out where GAITWRIGHT_TEST_DATA does not name the shared data. `--write` puts the tables into resources/help/accuracy.md.
 """
 
-import argparse
 import contextlib
 import io
 import json
@@ -26,7 +25,9 @@ from core.body import Joint, Side
 from devices.files.session_folder import write_session
 from devices.simulation.walker import Tissue
 from tests.benchmarks.foot_scoring import FoundStrides, Stretch, StrideScore, score_strides
-from tests.benchmarks.gait import NO_BIAS, foot_of, optical_foot, recorded_foot
+from tests.benchmarks.gait import NO_BIAS, optical_foot, recorded_foot
+from tests.core.gait.feet import foot_of
+from tests.driver import options
 from tests.validation.paper_experiment import PROSTHESIS, against_bones, experiment
 from tests.validation.recordings_with_references import HINGES, recordings_with_references
 
@@ -170,10 +171,11 @@ def with_table(page: str, title: str, table: Sequence[str]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--people", type=int, default=10, help="simulated people in the paper's experiment")
-    parser.add_argument("--write", action="store_true", help=f"put the tables into {PAGE.name}")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        people=(10, "simulated people in the paper's experiment"),
+        write=(False, f"put the tables into {PAGE.name}"),
+    )
     page = PAGE.read_text(encoding="utf-8")
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     tables = {EXPERIMENT: list(experiment_table(required.people)), WHY: list(why_table(min(5, required.people)))}

@@ -6,7 +6,6 @@ Bias of a walk's mean and the 90th percentile of its size, each leg of each pers
 reports `fitting_power`.
 """
 
-import argparse
 import os
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
@@ -29,6 +28,7 @@ from devices.simulation.walker import (
     WalkerSettings,
     simulate,
 )
+from tests.driver import options
 from tests.validation.fitting_optics import feet_beside_optics, hinges_beside_optics
 from tests.validation.fitting_truth import true_strides
 
@@ -91,13 +91,14 @@ def accuracy(people: int, first: int, tissue: Tissue, prosthetic: Side | None = 
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--people", type=int, default=20)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--tissue", type=Tissue, nargs="+", default=list(Tissue))
-    parser.add_argument("--prosthetic", type=Side, default=None)
-    parser.add_argument("--optics", action="store_true")
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        people=20,
+        first=0,
+        tissue={"type": Tissue, "nargs": "+", "default": list(Tissue)},
+        prosthetic={"type": Side, "default": None},
+        optics=False,
+    )
     if required.optics:
         data = Path(os.environ["GAITWRIGHT_TEST_DATA"])
         print("two feet beside optics: measure, strides, bias, sd, median, middle half")

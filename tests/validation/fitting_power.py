@@ -9,7 +9,6 @@ often is that found? The change is the one that needs the least share of what is
 person: by `fitting_truth`, which knows nothing of the core.
 """
 
-import argparse
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -39,6 +38,7 @@ from devices.simulation.walker import (
     WalkerSettings,
     simulate,
 )
+from tests.driver import options
 from tests.validation.fitting_truth import true_strides
 
 FACTOR = 1.7
@@ -204,13 +204,14 @@ def tables(people: range, silent_people: range, tissue: Tissue, pool: Pool) -> I
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--people", type=int, default=100)
-    parser.add_argument("--silent", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--tissue", type=Tissue, nargs="+", default=[Tissue.SOFT, Tissue.REAL])
-    parser.add_argument("--processes", type=int, default=2)
-    required = parser.parse_args()
+    required = options(
+        __doc__,
+        people=100,
+        silent=200,
+        first=0,
+        tissue={"type": Tissue, "nargs": "+", "default": [Tissue.SOFT, Tissue.REAL]},
+        processes=2,
+    )
     people = range(required.first + 10_000, required.first + 10_000 + required.people)
     silent_people = range(required.first, required.first + required.silent)
     with get_context("spawn").Pool(required.processes) as pool:

@@ -8,7 +8,6 @@ stairs are declared; then stairs that nobody declared. The recordings are used w
 shared folder: as they are, in pieces of seven contacts, and with accelerometers that are off.
 """
 
-import argparse
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator, Mapping
@@ -39,6 +38,7 @@ from devices.simulation.walker import (
 )
 from devices.simulation.walker_courses import draw_course, simulate_course
 from tests.benchmarks.gait import recorded_foot
+from tests.driver import options
 from tests.trials_of_files import import_with
 
 FEET = {side: Site(f"{side}_{Segment.FOOT}") for side in Side}
@@ -247,10 +247,7 @@ def on_stairs(first: int, courses: int) -> tuple[int, int, int]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--walks", type=int, default=50, help="of each kind")
-    parser.add_argument("--first", type=int, default=0, help="the first seed")
-    required = parser.parse_args()
+    required = options(__doc__, walks=(50, "of each kind"), first=(0, "the first seed"))
     print("| walks | how many | strides | called stairs, each by itself | by a run of steps |\n|---|---|---|---|---|")
     for kind in KINDS:
         print(row(kind, simulated(kind, required.first, required.walks)), flush=True)

@@ -8,7 +8,6 @@ where GAITWRIGHT_TEST_DATA names the shared folder: a person who walks and turns
 a treadmill, who neither start nor turn.
 """
 
-import argparse
 import os
 import tempfile
 from collections.abc import Iterator
@@ -29,6 +28,7 @@ from devices.files.session_folder import read_session
 from devices.simulation.walker_body import CourseKind
 from devices.simulation.walker_courses import TAPE_M, CourseTruth, draw_course, simulate_course
 from tests.benchmarks.gait import optical_foot
+from tests.driver import options
 from tests.validation.recordings_with_references import feet
 
 COURSES = {
@@ -200,10 +200,7 @@ def recordings(data: Path) -> Iterator[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--first", type=int, default=0, help="the first seed")
-    parser.add_argument("--scale", type=float, default=1.0, help="share of the 220 courses")
-    required = parser.parse_args()
+    required = options(__doc__, first=(0, "the first seed"), scale=(1.0, "share of the 220 courses"))
     scale, first = required.scale, required.first
     for kind, count in COURSES.items():
         for line in reported(kind, score(kind, range(first, first + max(1, round(scale * count))))):

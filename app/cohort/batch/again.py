@@ -5,10 +5,10 @@ others are given is a session without names, and what they give back are the byt
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from uuid import UUID
 
-from app.cohort.batch.spread import Workers, finished
+from app.cohort.batch.spread import SelectionResult, Workers, finished
 from app.storage.analysis_content import packed
 from app.storage.journal.header import JournalRefusedError
 from app.storage.kept_analyses import bare
@@ -30,20 +30,6 @@ class AgainTask:
     session: Session
 
 
-@dataclass(slots=True)
-class AgainResult:
-    """What came of a selection. `failures`: reasons by the sessions' ids."""
-
-    total: int
-    analysed: int = 0
-    as_before: int = 0
-    failures: dict[UUID, str] = field(default_factory=dict)
-
-    @property
-    def finished(self) -> int:
-        return self.analysed + self.as_before + len(self.failures)
-
-
 def again_task(task: AgainTask) -> bytes:
     """Analyse a session; what came of it as the library keeps it."""
     return packed(analyse(task.session))
@@ -54,17 +40,11 @@ def analyse_again(
     read: Callable[[UUID], tuple[Session, Keep] | None],
     workers: Workers,
     report: Report,
-) -> AgainResult:
-    """Analyse sessions that this version has not analysed as they are described now; each is kept once it is done.
-
-    Parameters
-    ----------
-    read
-        Gives a session with its samples and what keeps the bytes that come of it; None: nothing is to be done.
-    report
-        What it raises ends the work; what was done until then is kept.
+) -> SelectionResult[UUID]:
+    """Analyse sessions that lack an analysis as described now, keeping each when done; `report` may stop it.
+    `read` gives a session with its samples and what keeps the result, None: nothing to do.
     """
-    result, keeps = AgainResult(len(session_ids)), dict[UUID, Keep]()
+    result, keeps = SelectionResult[UUID](len(session_ids)), dict[UUID, Keep]()
 
     def reported() -> None:
         words = tr("{done} of {total} sessions").format(done=result.finished, total=result.total)

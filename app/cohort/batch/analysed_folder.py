@@ -23,15 +23,7 @@ class AnalysisChoices:
 
 
 def write_analysed(session: Session, folder: Path, choices: AnalysisChoices, report: Report) -> Analysis:
-    """Analyse `session` and write all that comes of it into `folder`, which is there.
-
-    Raises
-    ------
-    FileRefusedError
-        A recording's folder has the name of one of the results, or a file of the session changed meanwhile.
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Analyse `session` and write all results to the existing `folder`; raises FileRefusedError or OSError."""
     analysis = analyse(session, choices.method, choices.tau_s, report)
     report(1.0, "writing")
     write_results(session, analysis, folder)
@@ -40,7 +32,7 @@ def write_analysed(session: Session, folder: Path, choices: AnalysisChoices, rep
 
         write_log(session, analysis, folder / LOG)
     if choices.has_report:
-        from app.reports.patient.report_file import write_report
+        from app.reports.patient.report_file import write_report  # Typst, and the pages
 
         report(1.0, "report")
         write_report(session, analysis, folder, datetime.now().astimezone(), version_of("gaitwright"))

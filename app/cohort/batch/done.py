@@ -9,14 +9,14 @@ import hashlib
 import json
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from app.cohort.batch.rows import Row
-from app.exports.summary import MOST_BYTES
 from app.storage.files import held
+from app.system.tables import read_json
 from devices.files.refusal import FileRefusedError
 
 FORMAT = "gaitwright-batch/1"
@@ -59,32 +59,11 @@ class BatchFolder:
             return None
 
     def keep(self, name: str, record: DoneRecord) -> None:
-        """Keep that a session is done, whole or not at all.
-
-        Raises
-        ------
-        OSError
-            It cannot be written.
-        """
-        reported = {
-            "key": record.key,
-            "making": record.making,
-            "summary_sha256": record.summary_sha256,
-            "rows": list(record.rows),
-        }
-        path = self._path(name)
-        beside = path.with_suffix(".new")
-        beside.write_text(json.dumps(reported, allow_nan=False), encoding="utf-8")
-        beside.replace(path)
+        """Keep that a session is done, whole or not at all; raises OSError."""
+        _replace(self._path(name), asdict(record))
 
     def forget(self, name: str) -> None:
-        """Keep nothing of a session that failed, so that the table has no rows of what it once held.
-
-        Raises
-        ------
-        OSError
-            It cannot be taken away.
-        """
+        """Keep nothing of a session that failed, so that the table has no old rows of it; raises OSError."""
         self._path(name).unlink(missing_ok=True)
 
     def _path(self, name: str) -> Path:
@@ -96,28 +75,13 @@ class BatchFolder:
 
 def read_mark(out: Path) -> str | None:
     """The mark of the batch at `out`; None where there is none, or none that is seen from here."""
-    path = out / FOLDER / ABOUT
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            return None
-        reported = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return None
-    is_ours = isinstance(reported, dict) and reported.get("format") == FORMAT and isinstance(reported.get("mark"), str)
-    return reported["mark"] if is_ours else None
+    mark = (read_json(out / FOLDER / ABOUT, FORMAT) or {}).get("mark")
+    return mark if isinstance(mark, str) else None
 
 
 @contextmanager
 def batch_at(out: Path) -> Iterator[BatchFolder]:
-    """The batch at `out`, or a new one there, as long as this program works at it.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there, or another program works at it.
-    OSError
-        The folder cannot be written.
-    """
+    """Hold the batch at `out`, existing or new, alone; raises FileRefusedError for other content or users."""
     out = out.resolve()
     mark = read_mark(out)
     if mark is None:
@@ -142,11 +106,15 @@ def batch_at(out: Path) -> Iterator[BatchFolder]:
 
 def _begun(out: Path) -> str:
     mark = secrets.token_hex(MARK_BYTES)
-    path = out / FOLDER / ABOUT
-    beside = path.with_suffix(".new")
-    beside.write_text(json.dumps({"format": FORMAT, "mark": mark}), encoding="utf-8")
-    beside.replace(path)
+    _replace(out / FOLDER / ABOUT, {"format": FORMAT, "mark": mark})
     return mark
+
+
+def _replace(path: Path, content: Mapping[str, object]) -> None:
+    """Whole or not at all."""
+    beside = path.with_suffix(".new")
+    beside.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
+    beside.replace(path)
 
 
 def _is_begun_or_empty(out: Path) -> bool:

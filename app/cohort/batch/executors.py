@@ -18,11 +18,9 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
-from time import monotonic
 from typing import Any, ParamSpec, TypeVar
 
-from app.cohort.batch.spread import ClusterLostError, WorkerLostError, Workers
-from devices.files.refusal import FileRefusedError, one_line
+from app.cohort.batch.spread import WorkerLostError, Workers
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -30,11 +28,6 @@ R = TypeVar("R")
 Call = tuple[Callable[..., Any], tuple[object, ...], dict[str, object]]
 
 MOST_TRIES = 8  # of a task: where one worker of two is killed every 5 s, one of two seconds loses all in 40 million
-TRIES_OF_CLUSTER = 2  # each of them up to four of the cluster's own (`distributed.scheduler.allowed-failures`)
-ANSWER_S = 10.0  # until a cluster's scheduler answers
-FIRST_WORKER_S = 60.0  # until one of its workers does, which may have to be started for it
-NOBODY_S = 300.0  # without any worker, after which nobody waits for one
-COUNTED_S = 5.0  # how long the number of a cluster's workers is believed
 MOST_STARTS = 20  # of a process that ends before it does anything
 PRELOADED = ("app.cohort.batch.task",)  # and with it all that computes
 BEGUN = "begun"
@@ -101,13 +94,7 @@ class ProcessExecutor(Executor):
         self._own.process = self._started(None)
 
     def _ask(self, fn: Callable[..., R], args: tuple[object, ...], kwargs: dict[str, object]) -> R:
-        """Have this thread's process do it; one that ends before it has begun is no loss but its own.
-
-        Raises
-        ------
-        WorkerLostError
-            The process ended meanwhile, or none begins.
-        """
+        """Run it in this thread's process; raises WorkerLostError if that ends meanwhile or none starts."""
         for _ in range(MOST_STARTS):
             process: _WorkerProcess | None = getattr(self._own, "process", None)
             if process is None or not process.is_there or process.calls >= CALLS_EACH:
@@ -154,13 +141,7 @@ class _WorkerProcess:
         return self._process.is_alive()
 
     def give(self, what: Call) -> None:
-        """Say what is to do, and wait until it is begun: a new process has to import first what takes seconds.
-
-        Raises
-        ------
-        EOFError, OSError
-            It has ended.
-        """
+        """Send the call and wait until it begins (imports take seconds); raises EOFError or OSError if ended."""
         self.calls += 1
         self._pipe.send(what)
         self._pipe.recv()
@@ -183,10 +164,7 @@ class _WorkerProcess:
 
 
 def _fresh_processes(preloaded: tuple[str, ...]) -> BaseContext:
-    """How processes are started: never as copies of this one, which would take its threads and locks along.
-
-    Where there is one, a server that has imported what they need makes them: a killed worker is back in no time.
-    """
+    """Give a context that never forks this process with its threads and locks; a preloaded server if possible."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -251,87 +229,3 @@ def processors() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-@contextmanager
-def of_a_cluster(address: str) -> Iterator[Workers]:
-    """The workers of the Dask cluster whose scheduler has this address.
-
-    Raises
-    ------
-    FileRefusedError
-        Dask is not installed, the address or no worker answers, or the workers have another Gaitwright.
-    """
-    try:
-        from distributed import Client
-    except ImportError as problem:
-        what = "this needs Dask, which is not installed"
-        raise FileRefusedError("--dask", what, "Install it with pip install .[cluster]") from problem
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost we say ourselves, in our own words
-    try:
-        client = Client(address, timeout=ANSWER_S, set_as_default=False)
-    except (OSError, ValueError, TypeError, RuntimeError) as problem:
-        what = "no scheduler of Dask answers at this address"
-        remedy = "Start the cluster, or give the address that its scheduler prints, such as tcp://192.0.2.1:8786"
-        raise FileRefusedError(one_line(address), what, remedy) from problem
-    try:
-        _check_workers(client, address)
-        executor = client.get_executor(pure=False)
-        yield Workers(executor, ClusterSize(client), TRIES_OF_CLUSTER, translate=_translated)
-    finally:
-        client.close(timeout=ANSWER_S)
-
-
-class ClusterSize:
-    """The number of threads of a cluster's workers, asked for now and then: workers come and go."""
-
-    def __init__(self, client: Any) -> None:
-        self._client, self._count = client, 1
-        self._asked_s = self._seen_s = monotonic() - COUNTED_S
-
-    def __call__(self) -> int:
-        """At least one, though there may be none: it may come back.
-
-        Raises
-        ------
-        ClusterLostError
-            There has been none for long.
-        """
-        now_s = monotonic()
-        if now_s - self._asked_s >= COUNTED_S:
-            count = sum(self._client.nthreads().values())
-            self._asked_s = now_s
-            self._seen_s = now_s if count else self._seen_s
-            self._count = max(1, count)
-            if now_s - self._seen_s > NOBODY_S:
-                raise ClusterLostError("it has no worker any more")
-        return self._count
-
-
-def _check_workers(client: Any, address: str) -> None:
-    from app.cohort.batch.software import software  # here, not above: worker processes begin with this module
-
-    asked = client.submit(software, pure=False)
-    try:
-        theirs = asked.result(timeout=FIRST_WORKER_S)
-    except TimeoutError as problem:
-        what = "no worker of this cluster answers"
-        raise FileRefusedError(one_line(address), what, "Start workers, then run the command again") from problem
-    except (ImportError, AttributeError) as problem:
-        what = "the workers of this cluster have no Gaitwright, or an older one"
-        raise FileRefusedError(one_line(address), what, "Install this version on all computers") from problem
-    if theirs != software():
-        what = "the workers of this cluster have another version of Gaitwright"
-        raise FileRefusedError(one_line(address), what, "Install this version on all computers")
-
-
-def _translated(error: Exception) -> Exception:
-    from distributed import CancelledError
-    from distributed.comm.core import CommClosedError
-    from distributed.scheduler import KilledWorker
-
-    if isinstance(error, KilledWorker):
-        return WorkerLostError("its workers were killed again and again")
-    if isinstance(error, CancelledError | CommClosedError):
-        return ClusterLostError("the scheduler is gone")
-    return error

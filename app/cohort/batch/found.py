@@ -25,16 +25,7 @@ class FoundSession:
 
 
 def find_sessions(folder: Path, out: Path) -> tuple[FoundSession, ...]:
-    """All session folders under `folder`, or itself, in the order of their names; nothing in `out` or hidden.
-
-    A session's name is that of its folder. Recordings inside their results (`NAME/session`) are called as these. Where
-    several sessions have one name, each is named by its path.
-
-    Raises
-    ------
-    FileRefusedError
-        There is none, or a folder cannot be read.
-    """
+    """Give session folders in `folder`, not in `out`, by name or else path; raises FileRefusedError for none."""
     folder = folder.resolve()
     if not folder.is_dir():
         raise FileRefusedError(str(folder), "this folder does not exist", "Choose the folder with the sessions")

@@ -17,6 +17,7 @@ from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, LibraryError, StoredSession
+from app.system.progress import nobody
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 
@@ -40,29 +41,17 @@ class LibrarySessions:
         return tuple(self._ids)
 
     def content(self, name: str) -> str:
-        """What the library holds of a session, in one word.
-
-        Raises
-        ------
-        FileRefusedError
-            It is gone.
-        """
+        """Give a digest of what the library holds of a session; raises FileRefusedError if it is gone."""
         return _content(self._visit(name))
 
     def session(self, name: str) -> GivenSession:
-        """A session with its samples; that it leaves the library is noted first.
-
-        Raises
-        ------
-        FileRefusedError
-            It is gone, cannot be read, or that cannot be noted.
-        """
+        """Note in the audit that a session leaves, then read it with samples; raises FileRefusedError."""
         visit, opened = self._visit(name), self._opened
         try:
             opened.library.audit.note(
                 Action.EXPORT, about("session", visit.id), format="batch", is_identified=True, typed="all"
             )
-            session = session_with_samples(opened, visit, DECODERS, _nobody_asks)
+            session = session_with_samples(opened, visit, DECODERS, nobody)
         except LibraryError as refusal:
             raise FileRefusedError(name, refusal.what, refusal.remedy) from refusal
         except JournalRefusedError as refusal:
@@ -99,7 +88,3 @@ def _content(visit: StoredSession) -> str:
     return hashlib.sha256(
         repr((visit.patient_id, visit.details, recordings)).encode("utf-8", "surrogatepass")
     ).hexdigest()
-
-
-def _nobody_asks(_share: float, _what: str) -> None:
-    """Report to nobody."""

@@ -5,14 +5,14 @@ name is in a row: a patient is a pseudonym, of notes and operators there is noth
 """
 
 import hmac
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.exports.figures import finite
 from app.storage.pseudonyms import SEXES, age_in_words
 from app.summary.averages import LegAverages, WalkAverages, averages_of
 from app.system.logs import version_of
+from app.system.tables import finite
 from core.body import Side
 from core.parameters import SPEED
 from core.results import Analysis
@@ -58,35 +58,20 @@ GROUPS: Mapping[str, CellKind] = {
     "strides_left_out": CellKind.COUNT,
 }
 OF_BOTH_ONLY = tuple(name for name in OF_BOTH if name not in PARAMETERS)  # a leg alone has no such figure
+
+
+def _of(names: Iterable[str], *more: str) -> dict[str, CellKind]:
+    """Of each figure its own column and those beside it."""
+    ends = ("", *more)
+    return {name + end: CellKind.TEXT if end == "_status" else CellKind.NUMBER for name in names for end in ends}
+
+
 COLUMNS: Mapping[str, CellKind] = {
     **GROUPS,
-    **{
-        column: kind
-        for name in PARAMETERS
-        for column, kind in (
-            (name, CellKind.NUMBER),
-            (f"{name}_sd", CellKind.NUMBER),
-            (f"{name}_error", CellKind.NUMBER),
-            (f"{name}_status", CellKind.TEXT),
-        )
-    },
-    **{
-        column: kind
-        for name in OF_BOTH_ONLY
-        for column, kind in ((name, CellKind.NUMBER), (f"{name}_status", CellKind.TEXT))
-    },
+    **_of(PARAMETERS, "_sd", "_error", "_status"),
+    **_of(OF_BOTH_ONLY, "_status"),
 }
-
-
-HIP_COLUMNS: Mapping[str, CellKind] = {  # of a table with a session that had a sensor on the pelvis
-    column: kind
-    for name in OF_HIPS
-    for column, kind in (
-        (name, CellKind.NUMBER),
-        (f"{name}_sd", CellKind.NUMBER),
-        (f"{name}_status", CellKind.TEXT),
-    )
-}
+HIP_COLUMNS: Mapping[str, CellKind] = _of(OF_HIPS, "_sd", "_status")  # of a table with a sensor on some pelvis
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +83,7 @@ class ReportedOf:
 
 
 def reported_of_folder(session: Session, mark: str) -> ReportedOf:
-    """What distinguishes a batch's patients, keyed with its mark, until its table numbers them; and the session's
-    day."""
+    """Give what identifies a patient within the batch, keyed with its mark, and the session's day."""
     code = session.patient.code
     if not code:
         return ReportedOf("", session.started[:10])

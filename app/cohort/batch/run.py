@@ -3,7 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from time import monotonic
 
@@ -12,7 +12,7 @@ from app.cohort.batch.done import BatchFolder
 from app.cohort.batch.rows import COLUMNS, HIP_COLUMNS, UNNUMBERED, Row
 from app.cohort.batch.software import software
 from app.cohort.batch.sources import SessionSource
-from app.cohort.batch.spread import WorkerLostError, Workers, finished
+from app.cohort.batch.spread import SelectionResult, WorkerLostError, Workers, finished
 from app.cohort.batch.table import write_tables
 from app.cohort.batch.task import BatchTask, SessionOutcome, analyse_task, key_of, making_of, summary_digest
 from app.system.progress import Report
@@ -27,18 +27,10 @@ Work = Callable[[BatchTask], SessionOutcome]
 
 
 @dataclass(slots=True)
-class BatchResult:
-    """What came of a batch. `failures`: reasons by the sessions' names; `rows`: of the table."""
+class BatchResult(SelectionResult[str]):
+    """What came of a batch, sessions by their names. `rows`: of the table."""
 
-    total: int
-    analysed: int = 0
-    as_before: int = 0
     rows: int = 0
-    failures: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def finished(self) -> int:
-        return self.analysed + self.as_before + len(self.failures)
 
 
 class Batch:
@@ -54,15 +46,7 @@ class Batch:
         self.result = BatchResult(len(sessions.names))
 
     def run(self, workers: Workers, report: Report) -> None:
-        """Do all that is not done, then write the table; where something ends it early, of what is done.
-
-        Raises
-        ------
-        ClusterLostError
-            The workers are out of reach.
-        OSError
-            OUT cannot be written.
-        """
+        """Do what is not done, then write the table, also if ended early; raises ClusterLostError or OSError."""
         pace, result = Pace(monotonic()), self.result
         report(0.0, f"0 of {result.total} sessions")
         try:
@@ -93,13 +77,7 @@ class Batch:
             yield BatchTask(name, source, self._folder, self._choices, self._software, known, self._figures)
 
     def _take(self, name: str, outcome: SessionOutcome | Exception) -> None:
-        """Keep what came of a session.
-
-        Raises
-        ------
-        OSError
-            OUT cannot be written.
-        """
+        """Keep what came of a session; raises OSError where OUT cannot be written."""
         if isinstance(outcome, OSError):
             raise outcome
         if isinstance(outcome, Exception):
@@ -143,13 +121,7 @@ class Pace:
 
     @property
     def per_minute(self) -> float:
-        """Sessions a minute; NaN while nothing is finished.
-
-        Returns
-        -------
-        float
-            1/min.
-        """
+        """Give sessions per minute; NaN while nothing is finished."""
         took_s = self._finished_s[-1] - self._finished_s[0]
         return 60 * (len(self._finished_s) - 1) / took_s if took_s > 0 else math.nan
 

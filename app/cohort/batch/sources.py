@@ -15,13 +15,7 @@ class SessionSource(Protocol):
     def names(self) -> Sequence[str]: ...
 
     def content(self, name: str) -> str:
-        """What is in a session, in one word; empty where only whoever reads it can know.
-
-        Raises
-        ------
-        FileRefusedError
-            It is not to be had.
-        """
+        """Give a digest of a session's content, empty if only reading shows it; raises FileRefusedError."""
 
     def session(self, name: str) -> Path | GivenSession:
         """The session, for whoever analyses it; raises as `content`."""

@@ -8,7 +8,7 @@ nothing changed take no longer than one, and one that changed among them must no
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from time import perf_counter
 from typing import Generic, TypeVar
@@ -34,27 +34,34 @@ class ClusterLostError(Exception):
     """Nobody can be given a task any more."""
 
 
+@dataclass(slots=True)
+class SelectionResult(Generic[T]):
+    """What came of a selection of sessions so far. `failures`: reasons by what the sessions are called."""
+
+    total: int
+    analysed: int = 0
+    as_before: int = 0
+    failures: dict[T, str] = field(default_factory=dict)
+
+    @property
+    def finished(self) -> int:
+        return self.analysed + self.as_before + len(self.failures)
+
+
 @dataclass(frozen=True, slots=True)
 class Workers:
     """Who does the tasks.
 
-    Attributes
-    ----------
-    count
-        How many of them there are just now; raises ClusterLostError where there has been none for long.
-    most_tries
-        How often a task may lose its worker until it is given up.
-    has_queue
-        Whether a task should lie ready for each worker that is at work. In this process nobody would fetch it.
-    most_together
-        How many tasks may go out as one; what is done of a group that is broken off is lost with the rest of it.
-    translate
-        What an exception of this executor is: a `WorkerLostError`, a `ClusterLostError`, or itself.
+    `count`: how many of them there are just now; raises ClusterLostError where there has been none for long.
+    `has_queue`: whether a task should lie ready for each worker that is at work. In this process nobody would fetch it.
+    `most_together`: how many tasks may go out as one; what is done of a group that is broken off is lost with the rest
+    of it.
+    `translate`: what an exception of this executor is: a `WorkerLostError`, a `ClusterLostError`, or itself.
     """
 
     executor: Executor
     count: Callable[[], int]
-    most_tries: int
+    most_tries: int  # how often a task may lose its worker until it is given up
     has_queue: bool = True
     most_together: int = MOST_TOGETHER
     translate: Callable[[Exception], Exception] = lambda error: error
@@ -95,15 +102,7 @@ def work_group(work: Callable[[T], R], tasks: tuple[T, ...]) -> GroupResult[R]:
 
 
 def finished(work: Callable[[T], R], tasks: Iterator[T], workers: Workers) -> Iterator[tuple[T, R | Exception]]:
-    """Each task once, as it is finished, with what came of it: its result, or the exception that it ended with.
-
-    `tasks` are asked for one after the other as workers get free, so that only a few are ever held.
-
-    Raises
-    ------
-    ClusterLostError
-        The workers are out of reach; what was given out is lost.
-    """
+    """Yield each task with its result or exception; `tasks` is read only as needed; raises ClusterLostError."""
     again: deque[TaskGroup[T]] = deque()
     running: dict[Future[GroupResult[R]], TaskGroup[T]] = {}
     together = 1
@@ -146,13 +145,7 @@ def _given(workers: Workers, work: Callable[[T], R], group: TaskGroup[T]) -> "Fu
 
 
 def _result(workers: Workers, future: "Future[GroupResult[R]]") -> GroupResult[R] | Exception:
-    """What came of a group; an exception where nothing did.
-
-    Raises
-    ------
-    ClusterLostError
-        The workers are out of reach.
-    """
+    """Give a group's results or its exception; raises ClusterLostError where workers are out of reach."""
     if future.cancelled():  # we cancel nothing that we wait for
         raise ClusterLostError("it gave up what it was given")
     error = future.exception()

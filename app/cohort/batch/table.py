@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.cohort.batch.rows import COLUMNS, CellKind, Row
-from app.system.tables import typed_cell
+from app.system.tables import csv_cell
 
 CSV, PARQUET = "parameters.csv", "parameters.parquet"
 BLOCK_ROWS = 1024
@@ -31,13 +31,7 @@ TYPES = {
 def write_tables(
     rows: Iterable[Row], beside: Path, folder: Path, columns: Mapping[str, CellKind] = MappingProxyType(dict(COLUMNS))
 ) -> int:
-    """Write both files into `beside` and rename them into `folder`; gives how many rows they have.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write both files into `beside`, rename them into `folder`, give the number of rows; raises OSError."""
     count = 0
     schema = pa.schema([(name, TYPES[kind]) for name, kind in columns.items()])
     words = [name for name, kind in columns.items() if kind is CellKind.TEXT]
@@ -50,7 +44,7 @@ def write_tables(
         group: list[pa.RecordBatch] = []
         for block in _blocks(rows):
             count += len(block)
-            lines.writerows([_cell(kind, row.get(name)) for name, kind in columns.items()] for row in block)
+            lines.writerows([csv_cell(row.get(name)) for name in columns] for row in block)
             group.append(_batch(block, schema))
             if sum(len(batch) for batch in group) >= GROUP_ROWS:
                 parquet.write_table(pa.Table.from_batches(group), row_group_size=GROUP_ROWS)
@@ -71,12 +65,3 @@ def _blocks(rows: Iterable[Row]) -> Iterator[list[Row]]:
 def _batch(block: Sequence[Row], schema: pa.Schema) -> pa.RecordBatch:
     arrays = [pa.array([row.get(field.name) for row in block], field.type) for field in schema]
     return pa.RecordBatch.from_arrays(arrays, schema=schema)
-
-
-def _cell(kind: CellKind, value: str | float | int | bool | None) -> str:
-    """Empty where nothing is known; numbers with every digit they have."""
-    if value is None:
-        return ""
-    if kind is CellKind.FLAG:
-        return "true" if value else "false"
-    return typed_cell(str(value)) if kind is CellKind.TEXT else repr(value)

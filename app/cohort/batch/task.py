@@ -22,6 +22,7 @@ from app.cohort.batch.software import software
 from app.exports.result_folder import SUMMARY, check_place, written_beside
 from app.importing.untrusted_files import read_foreign_session
 from app.system.logs import pseudonymised
+from app.system.progress import nobody
 from core.session import Session
 from core.verdicts.sigmas import PUBLISHED, ErrorFigures, using
 from devices.files.limited_reader import MOST_FILE_BYTES
@@ -71,13 +72,7 @@ class _Hash(Protocol):
 
 
 def analyse_task(task: BatchTask) -> SessionOutcome:
-    """Analyse a session into its folder of results, unless these are what would come of it.
-
-    Raises
-    ------
-    OSError
-        There is no room, or OUT cannot be written at all.
-    """
+    """Analyse a session into its results folder, unless these are up to date; raises OSError."""
     try:
         with using(task.figures):  # which of a library only the process has that opened it
             return _analysed(task)
@@ -116,20 +111,14 @@ def _analysed(task: BatchTask) -> SessionOutcome:
         session = read_foreign_session(source, _nobody_waits)
         reported = reported_of_folder(session, task.batch.mark)
     with written_beside(results, within=task.batch.work) as folder:
-        analysis = write_analysed(session, folder, task.choices, _nobody_asks)
+        analysis = write_analysed(session, folder, task.choices, nobody)
         digest = summary_digest(folder)
     rows = rows_of(task.name, session, analysis, reported)
     return SessionOutcome(task.name, DoneRecord(key, making, digest, rows))
 
 
 def _check_worker(task: BatchTask) -> None:
-    """See that this process has the software and sees the folders of whoever asks.
-
-    Raises
-    ------
-    FileRefusedError
-        It does not.
-    """
+    """Raise FileRefusedError where this process lacks the caller's software or folders."""
     here = one_line(socket.gethostname())
     if software() != task.software:
         what = "the worker here has another version of Gaitwright"
@@ -180,8 +169,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _add(path: Path, digest: _Hash) -> None:
-    """What cannot be read is noted as such: only some of these files are the session, and reading that refuses
-    them."""
+    """Hash a file; an unreadable one is hashed as such, since only reading the session can refuse it."""
     try:
         if path.is_symlink():
             digest.update(b"link\0" + os.fsencode(path.readlink()) + b"\0")
@@ -199,7 +187,3 @@ def _add(path: Path, digest: _Hash) -> None:
 
 def _nobody_waits() -> None:
     """Let it end in its own time: the reading has a deadline."""
-
-
-def _nobody_asks(_share: float, _what: str) -> None:
-    """Report to nobody."""

@@ -51,13 +51,7 @@ class StudyPeople:
             self._simulated.append(session.is_simulated)
 
     def figures(self, made_by: str, software: str) -> OwnFigures:
-        """What the study found.
-
-        Raises
-        ------
-        TooFewPeopleError
-            Too few people were measured twice.
-        """
+        """Give the study's figures; raises TooFewPeopleError where too few people were measured twice."""
         people = [found for person, found in self._people.items() if person not in self._affected]
         return replace(repeatability_of(people), made_by=made_by, software=software, is_simulated=any(self._simulated))
 

@@ -35,13 +35,7 @@ class StudyResult:
 def study(
     where: str, sessions: Iterable[tuple[str, Read]], people: StudyPeople, made_by: str, report: Report
 ) -> StudyResult:
-    """Read all sessions, by their names, and find what people's attachments differ by.
-
-    Raises
-    ------
-    FileRefusedError
-        Too few people were measured twice, or a session cannot be read.
-    """
+    """Read all sessions and find what attachments differ by; raises FileRefusedError also for too few people."""
     listed = list(sessions)
     for number, (name, read) in enumerate(listed):
 
@@ -66,26 +60,14 @@ def _remedy(people: StudyPeople) -> str:
 
 
 def write_figures(own: OwnFigures, folder: Path) -> None:
-    """Write the figures as JSON and as a table.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written.
-    """
+    """Write the figures as JSON and as a table; raises OSError."""
     text = json.dumps(figures_in_json(own), indent=2, allow_nan=False)
     (folder / FIGURES).write_text(text + "\n", encoding="utf-8", newline="\n")
     write_table(HEADS, csv_rows(own), folder / TABLE)
 
 
 def read_figures(path: Path) -> OwnFigures:
-    """Read what `write_figures` wrote.
-
-    Raises
-    ------
-    FileRefusedError
-        The file cannot be read, or is none of this kind.
-    """
+    """Read what `write_figures` wrote; raises FileRefusedError."""
     remedy = tr("Choose the {file} written by the command “gaitwright repeatability”").format(file=FIGURES)
     try:
         if path.stat().st_size > MOST_BYTES:

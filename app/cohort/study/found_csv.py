@@ -6,30 +6,15 @@ import math
 import os
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
-from decimal import Decimal
 from itertools import chain, islice
 from pathlib import Path
 
-from app.system.tables import typed_cell
+from app.system.tables import csv_cell
 from devices.files.refusal import FileRefusedError, one_line
 
 MOST_ON_TERMINAL = 1000  # rows: who wants more wants a file
 WIDEST_ON_TERMINAL = 40  # letters of a cell
 DIGITS_ON_TERMINAL = 6
-
-
-def csv_cell(value: object) -> str:
-    """Give one value as a cell: empty where there is none, numbers with all their digits, no text as a formula."""
-    match value:
-        case None:
-            return ""
-        case bool():
-            return "true" if value else "false"
-        case float():
-            return "" if math.isnan(value) else repr(value)
-        case int() | Decimal():
-            return str(value)
-    return typed_cell(str(value))
 
 
 def csv_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
@@ -44,13 +29,7 @@ def csv_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Itera
 
 
 def check_csv_place(out: Path, table: Path) -> None:
-    """See whether a CSV file may stand at `out`: nothing is there, or a file that is called so and is not the table.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there.
-    """
+    """Raise FileRefusedError where anything but a CSV file, or the table itself, is at `out`."""
     if out.is_dir():
         raise FileRefusedError(str(out), "this is a folder", "Enter a file name, such as answer.csv")
     if out.exists() and (out.suffix.lower() != ".csv" or out.resolve() == table.resolve()):
@@ -58,13 +37,7 @@ def check_csv_place(out: Path, table: Path) -> None:
 
 
 def write_csv(columns: Sequence[str], rows: Iterable[Sequence[object]], out: Path) -> int:
-    """Write a CSV file beside `out` and put it in its place when it is whole; give the number of rows.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to; what was there stays.
-    """
+    """Write a CSV file whole or not at all, and give the number of rows; raises OSError, keeping the old file."""
     out.parent.mkdir(parents=True, exist_ok=True)
     handle, beside = tempfile.mkstemp(prefix=f".{out.name}-", dir=out.parent)
     count = -1  # the names of the columns are no row
@@ -81,8 +54,7 @@ def write_csv(columns: Sequence[str], rows: Iterable[Sequence[object]], out: Pat
 
 
 def aligned_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
-    """Give the table for a terminal, numbers at the right, long texts cut; after `MOST_ON_TERMINAL` rows a note
-    follows."""
+    """Lay out a table for a terminal, cutting long texts and, with a note, rows after `MOST_ON_TERMINAL`."""
     left = iter(rows)
     shown = [tuple(row) for row in islice(left, MOST_ON_TERMINAL)]
     cells = [[_short(name) for name in columns], *([_short(value) for value in row] for row in shown)]

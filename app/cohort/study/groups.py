@@ -71,22 +71,13 @@ class GroupQuestion:
 class GroupRow:
     """One group. What is not known is NaN.
 
-    Attributes
-    ----------
-    group
-        A condition or device as typed; `left`; `prosthetic`; a band by its lower edge ("18", "0.4", the first "0");
-        empty: not stated, or a speed that cannot be read.
-    sessions, patients, walks
-        Those with a value that counts; no patients where one of the sessions does not name its own.
-    mean, sd, standard_error, half_interval
-        Of the sessions' values, in the unit that the measure's name ends with; sd, standard error and half of the 95 %
-        interval are NaN under three sessions.
-    value_error
-        Median measurement error (95 %) of the mean of one walk and side.
-    not reported, with_care, not_measured
-        Walks of one side that are left out for this.
-    sessions_without
-        Sessions of the group without any value that counts.
+    `group`: a condition or device as typed; `left`; `prosthetic`; a band by its lower edge ("18", "0.4", the first
+    "0"); empty: not stated, or a speed that cannot be read.
+    `sessions`, `patients`, `walks`: those with a value that counts; no patients where one of the sessions does not name
+    its own.
+    `mean`, `sd`, `standard_error`, `half_interval`: of the sessions' values, in the unit that the measure's name ends
+    with; sd, standard error and half of the 95 % interval are NaN under three sessions.
+    `not reported`, `with_care`, `not_measured`: walks of one side that are left out for this.
     """
 
     group: str
@@ -97,11 +88,11 @@ class GroupRow:
     sd: float
     standard_error: float
     half_interval: float
-    value_error: float
+    value_error: float  # median measurement error (95 %) of the mean of one walk and side
     withheld: int
     with_care: int
     not_measured: int
-    sessions_without: int
+    sessions_without: int  # sessions of the group without any value that counts
 
     @property
     def has_interval(self) -> bool:
@@ -109,13 +100,7 @@ class GroupRow:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """From where to where the mean lies at 95 %, NaN without one.
-
-        Returns
-        -------
-        (float, float)
-            In the unit of the measure.
-        """
+        """Give the 95 % interval of the mean in the measure's unit; NaN without one."""
         return self.mean - self.half_interval, self.mean + self.half_interval
 
 
@@ -146,13 +131,7 @@ class GroupAnswer:
 
 
 def measures_of(table: ParameterTable) -> tuple[str, ...]:
-    """The parameters that can be asked for.
-
-    Raises
-    ------
-    FileRefusedError
-        There is none.
-    """
+    """Give the parameters that can be asked for; raises FileRefusedError if there is none."""
     if not table.measures:
         raise FileRefusedError(
             table.where,
@@ -168,13 +147,7 @@ def groupings_of(table: ParameterTable) -> tuple[Grouping, ...]:
 
 
 def answer(table: ParameterTable, question: GroupQuestion) -> GroupAnswer:
-    """Answer the question of the page.
-
-    Raises
-    ------
-    FileRefusedError
-        The table has no such parameter, or not what it takes to group so.
-    """
+    """Answer the page's question; raises FileRefusedError where the table lacks a column for it."""
     if question.measure not in table.measures:
         raise FileRefusedError(
             table.where,

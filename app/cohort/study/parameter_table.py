@@ -15,7 +15,7 @@ from devices.files.refusal import FileRefusedError
 PARQUET = "parameters.parquet"  # in the folder of a batch
 VIEW = "parameters"
 NEEDED = ("session", "walk", "side")  # what a row is of
-STATUS, ERROR, SD = "_status", "_error", "_sd"
+STATUS, ERROR = "_status", "_error"
 NUMBERS = ("DOUBLE", "FLOAT")
 
 
@@ -50,13 +50,7 @@ class ParameterTable:
     @classmethod
     @contextmanager
     def opened(cls, place: Path) -> Iterator[Self]:
-        """Open a Parquet, or that in the folder of a batch.
-
-        Raises
-        ------
-        FileRefusedError
-            There is none, it cannot be read, or it is no table of a batch.
-        """
+        """Open a Parquet file or a batch folder's; raises FileRefusedError."""
         file = place / PARQUET if place.is_dir() else place
         if not file.is_file():
             raise FileRefusedError(str(file), "not found", "Choose the parameters.parquet written by gaitwright batch")
@@ -72,23 +66,11 @@ class ParameterTable:
         )
 
     def ask(self, sql: str) -> FoundRows:
-        """Answer one question that somebody typed.
-
-        Raises
-        ------
-        FileRefusedError
-            It is no question, more than one, or it cannot be answered.
-        """
+        """Answer one typed SQL query; raises FileRefusedError where it is none, several or fails."""
         return self._found(sql, is_typed=True)
 
     def found(self, sql: str) -> FoundRows:
-        """Answer a question of our own.
-
-        Raises
-        ------
-        FileRefusedError
-            It cannot be answered.
-        """
+        """Answer an internal SQL query; raises FileRefusedError."""
         return self._found(sql, is_typed=False)
 
     def _found(self, sql: str, *, is_typed: bool) -> FoundRows:

@@ -8,15 +8,15 @@ from PySide6.QtCore import QModelIndex, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TableCell, TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING, MARK = 44, 36, 12, 20
@@ -88,16 +88,10 @@ class TickList(CellTable):
         return event.key() == Qt.Key.Key_Space or super().is_opening(event)
 
 
-class AnalyseAgainPage(Themed):
-    """Knows lines and which of them are ticked.
+class AnalyseAgainPage(QWidget):
+    """Knows lines and which of them are ticked."""
 
-    Signals
-    -------
-    changed
-        Other sessions are ticked.
-    """
-
-    changed = Signal()
+    changed = Signal()  # other sessions are ticked
 
     def __init__(self) -> None:
         super().__init__()
@@ -125,7 +119,10 @@ class AnalyseAgainPage(Themed):
         self.all.clicked.connect(self._on_all)
         self.none.clicked.connect(self._on_none)
         self.forget()
-        self._apply_theme()
+        scaled(self._column.setContentsMargins, MARGIN, 16, MARGIN, GAP)
+        scaled(self._column.setSpacing, GAP)
+        scaled(self._buttons.setSpacing, 8)
+        scaled(self.list.setMinimumHeight, HEAD + 3 * ROW)
 
     @property
     def ticked(self) -> tuple[UUID, ...]:
@@ -151,18 +148,10 @@ class AnalyseAgainPage(Themed):
         self._show()
 
     def _build(self) -> None:
-        self._buttons = QHBoxLayout()
-        for button in (self.earlier, self.all, self.none):
-            self._buttons.addWidget(button)
-        self._buttons.addStretch(1)
+        self._buttons = lay_out(QHBoxLayout(), self.earlier, self.all, self.none, 1)
         self._card = Card(padding=0)
-        self._card.column.addWidget(self.list, 1)
-        self._card.column.addWidget(self.nothing, 1, Qt.AlignmentFlag.AlignCenter)
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self._title)
-        self._column.addWidget(self._lead)
-        self._column.addLayout(self._buttons)
-        self._column.addWidget(self._card, 1)
+        lay_out(self._card.column, (self.list, 1), (self.nothing, 1, Qt.AlignmentFlag.AlignCenter))
+        self._column = lay_out(QVBoxLayout(self), self._title, self._lead, self._buttons, (self._card, 1))
 
     def _show(self) -> None:
         row = self.list.currentIndex().row()
@@ -214,10 +203,3 @@ class AnalyseAgainPage(Themed):
     def _on_none(self) -> None:
         self._ticked = set()
         self._show()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
-        self._column.setSpacing(px(GAP))
-        self._buttons.setSpacing(px(8))
-        self.list.setMinimumHeight(px(HEAD + 3 * ROW))

@@ -9,8 +9,9 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
-from app.cohort.batch.again import AgainResult, analyse_again
+from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.storage.kept_analyses import algorithm
 from app.system.progress import Report
@@ -22,6 +23,7 @@ from app.wording.patients import when
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.cohort.batch.run import BatchResult
@@ -30,37 +32,19 @@ if TYPE_CHECKING:
 TABLE = "parameters.parquet"  # as app.cohort.batch.table has it
 
 
-class AnalysingAgain(QObject):
-    """One selection at a time.
+class AnalysingAgain(LongWork):
+    """One selection at a time."""
 
-    Signals
-    -------
-    changed
-        The bar shows something else.
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and how many sessions.
-    done
-        It ended: what came of it, and what to do.
-    table_made
-        The path of a table over many sessions, to be asked.
-    """
-
-    changed = Signal()
-    working = Signal(str)
-    progressed = Signal(float, str)
-    done = Signal(str, str)
-    table_made = Signal(object)
+    changed = Signal()  # the bar shows something else
+    done = Signal(str, str)  # it ended: what came of it, and what to do
+    table_made = Signal(object)  # the path of a table over many sessions, to be asked
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
         self._dialog: QFileDialog | None = None
         self._failures: dict[UUID, str] = {}
         self._required: UUID | None = None
         self._out = Path()
-        self.is_working = False
         self.is_of_library = False  # what was asked for last: a table over all sessions, from the page that asks it
         self.page = AnalyseAgainPage()
         self.page.changed.connect(self.changed)
@@ -86,7 +70,7 @@ class AnalysingAgain(QObject):
         if not ids:
             return
 
-        def work(opened: "OpenedLibrary", report: Report) -> AgainResult:
+        def work(opened: "OpenedLibrary", report: Report) -> SelectionResult[UUID]:
             with of_this_computer(processors()) as workers:
                 return analyse_again(ids, lambda session_id: session_to_analyse(opened, session_id), workers, report)
 
@@ -109,18 +93,9 @@ class AnalysingAgain(QObject):
         self._out, self.is_of_library = out, ids is None
 
         def work(opened: "OpenedLibrary", report: Report) -> "BatchResult":
-            from app.cohort.batch.analysed_folder import AnalysisChoices
-            from app.cohort.batch.done import batch_at
-            from app.cohort.batch.library_sessions import LibrarySessions
-            from app.cohort.batch.run import Batch
-            from core.published.angles import DEFAULT_TAU_S
-            from core.results import Method
+            from app.cohort.batch.of_library import analysed_into  # Arrow, and what a table is written with
 
-            sessions, choices = LibrarySessions(opened, ids), AnalysisChoices(Method.ROBUST, DEFAULT_TAU_S)
-            with batch_at(out) as folder, of_this_computer(processors()) as workers:
-                batch = Batch(sessions, folder, choices)
-                batch.run(workers, report)
-            return batch.result
+            return analysed_into(out, opened, ids, report)
 
         self._begin(tr("Analysing to a folder"))
         self._controller.run_long(work, self._on_written, self._on_refused, self._on_progressed, self)
@@ -131,10 +106,6 @@ class AnalysingAgain(QObject):
         self._end(tr("Stopped."), tr("Sessions analysed so far are kept."))
         if not self.is_of_library:
             self._read()
-
-    def _begin(self, title: str) -> None:
-        self.is_working = True
-        self.working.emit(title)
 
     def _end(self, what: str, then: str) -> None:
         self.is_working = False
@@ -165,10 +136,7 @@ class AnalysingAgain(QObject):
         self.page.show_lines(*found)
         self.page.focus()
 
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
-
-    def _on_analysed(self, result: AgainResult) -> None:
+    def _on_analysed(self, result: SelectionResult[UUID]) -> None:
         self._failures, self._required = dict(result.failures), None
         stated = tr_n(
             "{count} session was analysed with this version.",

@@ -10,16 +10,16 @@ from app.cohort.study.measures import in_order, measure_words
 from app.home.cohort.cohort_table import MOST_ROWS, groups_table
 from app.home.cohort.cohort_text import group_name, grouping_word, notes, sentence
 from app.plots.group_plot import GroupLine, GroupPlot
-from app.theme.current import current_theme
+from app.theme.current import px
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.translation import figure_text, tr, tr_n
 
@@ -30,20 +30,12 @@ NARROW_BELOW = 860  # px of the design: the table leaves columns out
 MOST_DRAWN = 16  # groups; those with most sessions
 
 
-class QuestionsPage(Themed):
-    """Signals
-    -------
-    table_requested
-        Another table is to be chosen.
-    making_requested
-        A table is to be made from the library.
-    question_changed
-        What is asked now, a `GroupQuestion`.
-    """
+class QuestionsPage(QWidget):
+    """"""
 
-    table_requested = Signal()
-    making_requested = Signal()
-    question_changed = Signal(object)
+    table_requested = Signal()  # another table is to be chosen
+    making_requested = Signal()  # A table is to be made from the library
+    question_changed = Signal(object)  # what is asked now, a `GroupQuestion`
 
     def __init__(self) -> None:
         super().__init__()
@@ -82,7 +74,6 @@ class QuestionsPage(Themed):
         self._build()
         self._connect()
         self.show_nothing()
-        self._apply_theme()
 
     @property
     def question(self) -> GroupQuestion | None:
@@ -102,7 +93,6 @@ class QuestionsPage(Themed):
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
         self._width = width
-        px = current_theme().px
         room = px(width) - 2 * px(MARGIN)
         halves = (self._first_half, self._second_half)
         beside = sum(half.sizeHint().width() for half in halves) + px(GAP)
@@ -191,10 +181,7 @@ class QuestionsPage(Themed):
         self._name.setVisible(self._empty not in shown and bool(self._name.text()))
 
     def _build(self) -> None:
-        head = QHBoxLayout()
-        head.addWidget(self._title)
-        head.addWidget(self._name, 1)
-        head.addWidget(self.choose_table)
+        head = lay_out(QHBoxLayout(), self._title, (self._name, 1), self.choose_table)
         how = (
             tr("A table combines many sessions without names."),
             tr("All sessions of this library are analysed into a folder. Their results there are not encrypted."),
@@ -215,32 +202,20 @@ class QuestionsPage(Themed):
             (self._second_half, ((tr("Include"), self.included), ("", self.simulated))),
         ):
             for label, control in named:
-                part = QVBoxLayout()
+                part = lay_out(QVBoxLayout(), Text(label, weight=MEDIUM), (control, 1, Qt.AlignmentFlag.AlignVCenter))
                 part.setSpacing(4)
-                part.addWidget(Text(label, weight=MEDIUM))
-                part.addWidget(control, 1, Qt.AlignmentFlag.AlignVCenter)  # they are not all of one height
                 half.addLayout(part)
-            half.addStretch(1)
+            lay_out(half, 1, spacing=GAP)
         self._halves = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._controls)
-        self._halves.setContentsMargins(0, 0, 0, 0)
-        self._halves.addLayout(self._first_half)
-        self._halves.addLayout(self._second_half)
+        lay_out(self._halves, self._first_half, self._second_half, margins=0, spacing=GAP)
         self._chart = Card()
-        self._chart.column.addWidget(self.plot)
-        self._chart.column.addWidget(self._legend)
+        lay_out(self._chart.column, self.plot, self._legend)
         self._figures = Card()
-        self._figures.column.addWidget(self.table)
-        self._figures.column.addWidget(self.more)
-        self._answer_column = QVBoxLayout(self.answer)
-        self._answer_column.setContentsMargins(0, 0, 0, 0)
-        answers: tuple[QWidget, ...] = (self.sentence, self.notes, self._chart, self._figures)
-        for widget in answers:
-            self._answer_column.addWidget(widget)
-        self._column = QVBoxLayout(self)
-        self._column.addLayout(head)
-        for widget in (self.refusal, self._empty, self._controls, self.answer):
-            self._column.addWidget(widget)
-        self._column.addStretch(1)
+        lay_out(self._figures.column, self.table, self.more)
+        answers = (self.sentence, self.notes, self._chart, self._figures)
+        lay_out(QVBoxLayout(self.answer), *answers, margins=0, spacing=8)
+        column = lay_out(QVBoxLayout(self), head, self.refusal, self._empty, self._controls, self.answer, 1)
+        lay_out(column, margins=(MARGIN, 16, MARGIN, 20), spacing=12)
 
     def _connect(self) -> None:
         self.make_table.clicked.connect(self.making_requested)
@@ -254,14 +229,6 @@ class QuestionsPage(Themed):
     def _on_changed(self, _value: object = None) -> None:
         if (question := self.question) is not None:
             self.question_changed.emit(question)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(20))
-        self._column.setSpacing(px(12))
-        self._answer_column.setSpacing(px(8))
-        for row in (self._halves, self._first_half, self._second_half):
-            row.setSpacing(px(GAP))
 
 
 def _drawn(found: GroupAnswer) -> list[GroupRow]:

@@ -38,27 +38,13 @@ class _Written:
 
 
 class Questions(QObject):
-    """One thing at a time: a question that comes while another is answered waits, and only the last does.
+    """One thing at a time: a question that comes while another is answered waits, and only the last does."""
 
-    Signals
-    -------
-    changed
-        The bar may show something else.
-    reported
-        What came of it, and what to do.
-    again_requested
-        Sessions are to be analysed again.
-    repeatability_requested
-        The clinic's own error figures are asked for.
-    making_requested
-        A table is to be made from this library.
-    """
-
-    changed = Signal()
-    again_requested = Signal()
-    repeatability_requested = Signal()
-    making_requested = Signal()
-    reported = Signal(str, str)
+    changed = Signal()  # the bar may show something else
+    again_requested = Signal()  # sessions are to be analysed again
+    repeatability_requested = Signal()  # the clinic's own error figures are asked for
+    making_requested = Signal()  # A table is to be made from this library
+    reported = Signal(str, str)  # what came of it, and what to do
 
     def __init__(self, settings: Settings, parent: QObject) -> None:
         super().__init__(parent)

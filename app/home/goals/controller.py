@@ -27,18 +27,10 @@ def today() -> datetime.date:
 
 
 class GoalsOfPatient(QObject):
-    """One patient at a time.
+    """One patient at a time."""
 
-    Signals
-    -------
-    kept
-        A goal holds, or holds no longer.
-    reported
-        What could not be done, and what to do.
-    """
-
-    kept = Signal()
-    reported = Signal(str, str)
+    kept = Signal()  # A goal holds, or holds no longer
+    reported = Signal(str, str)  # what could not be done, and what to do
 
     def __init__(
         self,

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field, NumberField
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.dates import date
 from app.wording.measures import goal_in_words, measure_name, required, short_unit, whose_name
 from app.wording.translation import tr
@@ -39,18 +39,10 @@ class GoalDraft:
 
 
 class GoalsPage(TallPage):
-    """Proposes nothing: the value is typed.
+    """Proposes nothing: the value is typed."""
 
-    Signals
-    -------
-    agreed
-        A `GoalDraft`: it is to hold from now on.
-    taken_back
-        The key of a goal that is to hold no longer.
-    """
-
-    agreed = Signal(object)
-    taken_back = Signal(object)
+    agreed = Signal(object)  # A `GoalDraft`: it is to hold from now on
+    taken_back = Signal(object)  # the key of a goal that is to hold no longer
 
     def __init__(self) -> None:
         super().__init__()
@@ -81,7 +73,11 @@ class GoalsPage(TallPage):
         self._build()
         self._connect()
         self._on_measure_chosen()
-        self._apply_theme()
+        scaled(self.column.setContentsMargins, MARGIN, 16, MARGIN, GAP)
+        scaled(self.column.setSpacing, 12)
+        scaled(self._columns.setSpacing, GAP)
+        scaled(self._figures.setSpacing, 12)
+        scaled(self._list.setSpacing, 12)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -156,28 +152,16 @@ class GoalsPage(TallPage):
     def _build(self) -> None:
         form = self._form = Card(spacing=12)
         form.column.addWidget(Text(tr("Add a goal"), size=16, weight=SEMIBOLD))
-        form.column.addWidget(Text(tr("Measure"), weight=MEDIUM))
-        form.column.addWidget(self.measure)
-        for one in (self.whose, self.sense, self.apart):
-            form.column.addWidget(one)
+        lay_out(form.column, Text(tr("Measure"), weight=MEDIUM), self.measure, self.whose, self.sense, self.apart)
         self._figures = QHBoxLayout()
-        self._figures.addWidget(self.value, 1, Qt.AlignmentFlag.AlignTop)
-        self._figures.addWidget(self.weeks, 1, Qt.AlignmentFlag.AlignTop)
-        form.column.addLayout(self._figures)
-        form.column.addWidget(self.note)
-        form.column.addStretch(1)
+        lay_out(self._figures, (self.value, 1, Qt.AlignmentFlag.AlignTop), (self.weeks, 1, Qt.AlignmentFlag.AlignTop))
+        lay_out(form.column, self._figures, self.note, 1)
         self._held = Card()
-        self._held.column.addWidget(Text(tr("Agreed"), size=16, weight=SEMIBOLD))
-        self._held.column.addWidget(self.none_yet)
+        lay_out(self._held.column, Text(tr("Agreed"), size=16, weight=SEMIBOLD), self.none_yet)
         self._list = QVBoxLayout()
-        self._held.column.addLayout(self._list)
-        self._held.column.addStretch(1)
-        self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._columns.addWidget(self._form, 5)
-        self._columns.addWidget(self._held, 6)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self._lead)
-        self.column.addLayout(self._columns, 1)
+        lay_out(self._held.column, self._list, 1)
+        self._columns = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight), (self._form, 5), (self._held, 6))
+        lay_out(self.column, self._title, self._lead, (self._columns, 1))
 
     def _connect(self) -> None:
         self.measure.currentIndexChanged.connect(self._on_measure_chosen)
@@ -201,16 +185,8 @@ class GoalsPage(TallPage):
         self.value.low, self.value.high = (0.0 if is_between else LEAST), MOST[self._column]
         self.value.set_unit(short_unit(self._column).strip())
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
-        self.column.setSpacing(px(12))
-        self._columns.setSpacing(px(GAP))
-        self._figures.setSpacing(px(12))
-        self._list.setSpacing(px(12))
 
-
-class _GoalRow(Themed):
+class _GoalRow(QWidget):
     """One goal: what it asks for, who agreed on it and when, and a button to take it back while it holds."""
 
     taken_back = Signal(object)
@@ -225,18 +201,13 @@ class _GoalRow(Themed):
         self.limit = Text(required(goal), wraps=True, tone="ink" if goal.is_held else "ink2")
         self.about = Text(about(goal), size=12, tone="ink2", wraps=True)
         self.take_back: Button | None = None
-        column = QVBoxLayout()
-        column.setSpacing(0)
-        for part in (self.words, self.limit, self.about):
-            column.addWidget(part)
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.addLayout(column, 1)
+        column = lay_out(QVBoxLayout(), self.words, self.limit, self.about, spacing=0)
+        row = lay_out(QHBoxLayout(self), (column, 1), margins=0)
         if goal.is_held:
             self.take_back = Button(tr("Withdraw"), ButtonKind.QUIET, height=36)
             self.take_back.setAccessibleName(tr("Withdraw: {goal}").format(goal=goal_in_words(goal)))
             self.take_back.clicked.connect(self._on_take_back)
-            self._row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)
+            row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)
 
     @property
     def key(self) -> GoalKey:

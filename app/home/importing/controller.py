@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.home.importing.import_page import ImportPage
 from app.home.importing.import_words import program_name
+from app.importing.import_drafts import SessionDraft, chains_of_motion, drafts_of, session_of
 from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
 from app.storage.exchange import import_session
 from app.system.progress import Report
@@ -19,11 +20,11 @@ from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_files, ask_for_folder
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, SESSION
 
 if TYPE_CHECKING:
-    from app.importing.import_drafts import SessionDraft
     from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
     from core.placement.chains import Chains
@@ -39,7 +40,7 @@ class _Found:
 
     where: str
     session: "Session | None"
-    draft: "SessionDraft | None" = None
+    draft: SessionDraft | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,45 +52,30 @@ class _Read:
     again: tuple[Path, ...]
 
 
-class Importing(QObject):
+class Importing(LongWork):
     """What leads to the page that shows what is in files, and on from it: one session after the other.
 
-    Signals
-    -------
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and what is being done.
-    asked
-        Something is on the page, to be imported or not.
-    left
-        There is nothing more to be done here.
-    imported
-        The id of the patient, whose session is in the library now; None where only the list has to be read again.
-    reported
-        What came of it, and what to do.
+    `imported`: the id of the patient, whose session is in the library now; None where only the list has to be read
+    again.
     """
 
-    working = Signal(str)
-    progressed = Signal(float, str)
-    asked = Signal()
-    left = Signal()
+    asked = Signal()  # something is on the page, to be imported or not
+    left = Signal()  # there is nothing more to be done here
     imported = Signal(object)
-    reported = Signal(str, str)
+    reported = Signal(str, str)  # what came of it, and what to do
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
+        self._dialog: QFileDialog | None = None
         self._waiting: deque[_Found] = deque()
         self._shown: _Found | None = None
         self._number = self._count = 0
         self._again: tuple[Path, ...] = ()
         self._is_importing = False
-        self._dialog: QFileDialog | None = None
         self.page = ImportPage()
         self.page.code.line_edit.returnPressed.connect(self.take_in)
-        self.page.files_requested.connect(self._choose_files)
-        self.page.folder_requested.connect(self._choose_folder)
+        self.page.choose_files.clicked.connect(self._choose_files)
+        self.page.choose_folder.clicked.connect(self._choose_folder)
         self.page.reading_requested.connect(self._on_reading_requested)
         self.page.draft.placing_requested.connect(self._on_placing_requested)
 
@@ -132,8 +118,6 @@ class Importing(QObject):
         def work(opened: "OpenedLibrary", report: Report) -> "Imported":
             session = shown.session
             if shown.draft is not None:
-                from app.importing.import_drafts import session_of
-
                 session = session_of(shown.draft, kinds, sites, day)
             assert session is not None  # it is one or the other
             return import_session(opened, session, report, code)
@@ -185,9 +169,6 @@ class Importing(QObject):
     def _on_reading_requested(self, rate_hz: float) -> None:
         self.read(self._again, rate_hz)
 
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
-
     def _on_read(self, read: _Read) -> None:
         self._again = read.again
         if not read.found:
@@ -228,8 +209,6 @@ class Importing(QObject):
         draft, worn = self._shown.draft if self._shown is not None else None, self.page.draft.worn
 
         def work(_opened: "OpenedLibrary") -> "Chains | None":
-            from app.importing.import_drafts import chains_of_motion
-
             return chains_of_motion(draft, worn) if draft is not None else None
 
         self._controller.run(work, self._on_placed, self._on_placing_refused, self)
@@ -284,8 +263,6 @@ class Importing(QObject):
 
 def _read(paths: Sequence[Path], rate_hz: float | None, report: Report) -> _Read:
     """All that can be read of these files and folders, put together to sessions."""
-    from app.importing.import_drafts import drafts_of
-
     report(0.0, paths[0].name)
     gathered = gather_foreign(paths, lambda: report(0.0, paths[0].name))
     refused, again = list(gathered.refused), []

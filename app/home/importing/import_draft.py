@@ -15,12 +15,14 @@ from app.home.importing.import_words import (
     origin_words,
     sensor_name,
 )
-from app.theme.current import px
+from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft, key_of
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.small_curve import SmallCurve
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import joined, tr, tr_n
@@ -28,23 +30,16 @@ from core.body import LEG_SITES, Side, Site
 from core.session import RecordingKind
 
 if TYPE_CHECKING:
-    from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft
     from core.placement.chains import Chains
 
 OPEN, ELSEWHERE = "open", "elsewhere"  # what has no site or kind: left open, and worn elsewhere than on a leg
 
 
 class DraftCards(QWidget):
-    """Signals
-    -------
-    changed
-        A choice was made.
-    placing_requested
-        The motion shall say where the sensors were.
-    """
+    """"""
 
-    changed = Signal()
-    placing_requested = Signal()
+    changed = Signal()  # A choice was made
+    placing_requested = Signal()  # the motion shall say where the sensors were
 
     def __init__(self, of_code: QWidget) -> None:
         super().__init__()
@@ -103,7 +98,7 @@ class DraftCards(QWidget):
         self._of_recordings.hide()
         self._of_sensors.hide()
 
-    def show_draft(self, program: str, draft: "SessionDraft") -> None:
+    def show_draft(self, program: str, draft: SessionDraft) -> None:
         """Show what was read, with what is proposed."""
         self._chains = None
         self._of_recordings.show()
@@ -127,11 +122,7 @@ class DraftCards(QWidget):
         self._on_changed()
 
     def show_chains(self, chains: "Chains") -> bool:
-        """Take the legs that the motion gives: ask which of them is the left one, unless a site that was stated
-        gives it.
-
-        Returns whether they fit the sites that were stated.
-        """
+        """Take the legs found from motion and ask which is left unless sites show it; False: sites contradict."""
         stated = {key: site for key, site in self.sites.items() if site is not None}
         fitting = [side for side in Side if all(chains.sites(side).get(key) is site for key, site in stated.items())]
         if not fitting:
@@ -145,29 +136,15 @@ class DraftCards(QWidget):
         return True
 
     def _build(self, of_code: QWidget) -> None:
-        self._of_recordings.column.addWidget(self._recordings_title)
-        self._of_recordings.column.addLayout(self._recording_rows)
-        self._of_recordings.column.addStretch(1)
-        column = self._of_sensors.column
-        column.addWidget(self._sensors_title)
-        column.addLayout(self._sensor_rows)
+        lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, 1)
         self._sensor_rows.setColumnStretch(0, 1)
-        column.addWidget(self.trouble)
-        column.addWidget(self._question)
-        buttons = QHBoxLayout()
-        for button in (self.place, self.is_left, self.is_right):
-            buttons.addWidget(button)
-        buttons.addStretch(1)
-        column.addLayout(buttons)
-        column.addStretch(1)
-        self._left = QVBoxLayout()
-        self._left.addWidget(self._of_recordings)
-        self._left.addWidget(of_code)
-        self._left.addStretch(1)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.addLayout(self._left, 1)
-        self._row.addWidget(self._of_sensors, 1)
+        buttons = lay_out(QHBoxLayout(), self.place, self.is_left, self.is_right, 1)
+        of_sensors = (self._sensors_title, self._sensor_rows, self.trouble, self._question, buttons)
+        lay_out(self._of_sensors.column, *of_sensors, 1)
+        self._left = lay_out(QVBoxLayout(), self._of_recordings, of_code, 1)
+        self._row = lay_out(
+            QBoxLayout(QBoxLayout.Direction.LeftToRight, self), (self._left, 1), (self._of_sensors, 1), margins=0
+        )
         self.place.clicked.connect(self._on_place)
         self.is_left.clicked.connect(lambda: self._on_side(Side.LEFT))
         self.is_right.clicked.connect(lambda: self._on_side(Side.RIGHT))
@@ -175,7 +152,7 @@ class DraftCards(QWidget):
     def set_narrow(self, is_narrow: bool) -> None:
         """Put the sensors under the recordings."""
         for layout in (self._row, self._left):
-            layout.setSpacing(px(16))
+            scaled(layout.setSpacing, 16)
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 
@@ -208,10 +185,6 @@ class DraftCards(QWidget):
         self.placing_requested.emit()
 
     def _on_side(self, side: Side) -> None:
-        from app.importing.import_drafts import (
-            Origin,  # here: the window starts without what reads other programs' files
-        )
-
         assert self._chains is not None
         sites = self._chains.sites(side)
         self._chains = None
@@ -222,7 +195,7 @@ class DraftCards(QWidget):
 
 
 class _RecordingRow:
-    def __init__(self, column: QVBoxLayout, recording: "DraftRecording") -> None:
+    def __init__(self, column: QVBoxLayout, recording: DraftRecording) -> None:
         self._part = QWidget()
         grid = QGridLayout(self._part)
         grid.setContentsMargins(0, 0, 0, 0)
@@ -250,9 +223,7 @@ class _RecordingRow:
 
 
 class _SensorRow:
-    def __init__(self, grid: QGridLayout, sensor: "DraftSensor", shown: "DraftRecording") -> None:
-        from app.importing.import_drafts import key_of
-
+    def __init__(self, grid: QGridLayout, sensor: DraftSensor, shown: DraftRecording) -> None:
         self.sensor = sensor
         self._origin, self._proposed = sensor.origin, sensor.site
         name = sensor_name(sensor)
@@ -269,11 +240,7 @@ class _SensorRow:
         self._from = Text(size=12, tone="ink2")
         row = grid.rowCount()
         self._stated = QWidget()
-        stated = QVBoxLayout(self._stated)
-        stated.setContentsMargins(0, 0, 0, 0)
-        stated.setSpacing(0)
-        stated.addWidget(self._words)
-        stated.addWidget(self._from)
+        lay_out(QVBoxLayout(self._stated), self._words, self._from, margins=0, spacing=0)
         for column, part in enumerate(self._parts):
             grid.addWidget(part, row, column)
 
@@ -281,7 +248,7 @@ class _SensorRow:
     def _parts(self) -> tuple[QWidget, ...]:
         return self._stated, self._curve, self.site
 
-    def choose(self, site: Site, origin: "Origin") -> None:
+    def choose(self, site: Site, origin: Origin) -> None:
         """As something other than the person states."""
         self._origin, self._proposed = origin, site
         self.site.setCurrentIndex(self.site.findData(site))

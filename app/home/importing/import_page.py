@@ -8,14 +8,13 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.importing.import_draft import DraftCards
-from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field, NumberField
 from app.widgets.findings_list import FindingsList
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 from core.findings import Finding
 
@@ -26,22 +25,15 @@ RATE_HZ = (1.0, 2000.0)
 NARROW_BELOW = 900  # px of the design
 
 
-class ImportPage(Themed):
-    """Signals
-    -------
-    code_changed, changed
-        What was typed or chosen.
-    files_requested, folder_requested
-        Something is to be chosen.
-    reading_requested
-        What could not be read is to be tried again at a rate, Hz.
+class ImportPage(QWidget):
     """
 
-    code_changed = Signal(str)
+    `code_changed`, `changed`: what was typed or chosen.
+    `files_requested`, `folder_requested`: something is to be chosen.
+    """
+
     changed = Signal()
-    files_requested = Signal()
-    folder_requested = Signal()
-    reading_requested = Signal(float)
+    reading_requested = Signal(float)  # what could not be read is to be tried again at a rate, Hz
 
     def __init__(self) -> None:
         super().__init__()
@@ -71,7 +63,6 @@ class ImportPage(Themed):
         )
         self.read_again = Button(tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
         self._build()
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -131,29 +122,16 @@ class ImportPage(Themed):
         self.read_again.setVisible(can_try_again)
 
     def _build(self) -> None:
-        buttons = QHBoxLayout()
-        for button in (self.choose_files, self.choose_folder):
-            buttons.addWidget(button)
-        buttons.addStretch(1)
-        self._begin.column.addLayout(buttons)
-        self._begin.column.addWidget(self._formats)
-        of_code: tuple[QWidget, ...] = (self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
-        for part in of_code:
-            self._card.column.addWidget(part)
-        self._unread.column.addWidget(Text(tr("Not read"), size=16, weight=SEMIBOLD))
-        of_unread: tuple[QWidget, ...] = (self._unread_words, self.rate, self.read_again)
-        for part in of_unread:
-            self._unread.column.addWidget(part)
-        self._column = QVBoxLayout(self)
-        cards: tuple[QWidget, ...] = (self._begin, self.draft, self._unread, self.findings)
-        for part in (self._title, self._folder, *cards):
-            self._column.addWidget(part)
-        self._column.addStretch(1)
-        self.code.edited.connect(self.code_changed)
+        buttons = lay_out(QHBoxLayout(), self.choose_files, self.choose_folder, 1)
+        lay_out(self._begin.column, buttons, self._formats)
+        lay_out(self._card.column, self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
+        not_read = Text(tr("Not read"), size=16, weight=SEMIBOLD)
+        lay_out(self._unread.column, not_read, self._unread_words, self.rate, self.read_again)
+        cards = (self._begin, self.draft, self._unread, self.findings)
+        column = lay_out(QVBoxLayout(self), self._title, self._folder, *cards, 1)
+        lay_out(column, margins=(24, 16, 24, 20), spacing=16)
         self.day_field.edited.connect(self._on_day_edited)
         self.draft.changed.connect(self.changed)
-        self.choose_files.clicked.connect(self.files_requested)
-        self.choose_folder.clicked.connect(self.folder_requested)
         self.read_again.clicked.connect(self._on_read_again)
         self._show_parts(self._begin)
         self.show_unread((), can_try_again=False)
@@ -183,8 +161,3 @@ class ImportPage(Themed):
             self.reading_requested.emit(self.rate.value)
         else:
             self.rate.setFocus()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(16), px(24), px(20))
-        self._column.setSpacing(px(16))

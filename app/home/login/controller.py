@@ -68,11 +68,7 @@ class Entry(QObject):
         return self._new is not None or self._given is not None
 
     def begin(self) -> None:
-        """Show the page that comes first: where there is no library yet, how to make one.
-
-        One that was opened here before is missing, rather than to be made: its disk may not be connected. Where the
-        environment names the clinic's server, its library is joined.
-        """
+        """Show the first page: how to make a library, join the environment's server, or find a missing one."""
         self._new, self._given, self._key, self._cover_of, self._tried = None, None, "", "", ""
         if not (self._folder / KEYS).exists():
             if os.environ.get(DATABASE_VARIABLE):
@@ -90,7 +86,7 @@ class Entry(QObject):
         self.log_in.show_operators(())
         self.log_in.show_library("")
         self._show(self.log_in)
-        self._controller.look(self._folder, self._on_looked, self._on_look_failed, self)
+        self._controller.call(lambda holder: holder.look(self._folder), self._on_looked, self._on_look_failed, self)
 
     def look_again(self) -> None:
         """Go on where a library that was missing is there now."""
@@ -99,16 +95,13 @@ class Entry(QObject):
             self.begin()
 
     def cover(self, code: str, is_recording: bool, *, is_asked_for: bool = False) -> None:
-        """Show nothing but the way back, for the operator who is logged in.
-
-        A recovery key that was in sight is forgotten: behind the cover it is asked for, or made again.
-        """
+        """Cover the screen for the logged-in operator; a recovery key in sight is forgotten."""
         self._cover_of = code
         if self._key:
             self._key = ""
             self.first_start.ask_for_recovery_key()
         if self._delay is None:  # of a library that was just made
-            from app.storage.login_delay import LoginDelay
+            from app.storage.login_delay import LoginDelay  # cryptography
 
             self._delay = LoginDelay(self._folder, time.monotonic)
         self.log_in.show_cover(code, is_recording, is_asked_for=is_asked_for)
@@ -130,7 +123,7 @@ class Entry(QObject):
         self._tried = ""
         self.waiting.begin(tr("Opening the library"))
         self._show(self.waiting)
-        self._controller.open_kept(kept)
+        self._controller.open(lambda holder: holder.open_kept(kept))
 
     def focus(self, page: QWidget) -> None:
         if isinstance(page, FirstStartPage | LogInPage | JoinPage):
@@ -148,14 +141,14 @@ class Entry(QObject):
     def _connect(self) -> None:
         first, log_in, controller = self.first_start, self.log_in, self._controller
         first.made.connect(self._on_made)
-        first.look_requested.connect(self._on_look_requested)
+        first.look_again.clicked.connect(self._on_look_requested)
         first.done.connect(self._on_key_kept)
         first.typed_back.connect(self._confirm)
-        first.renew_requested.connect(self._on_renew_requested)
-        first.put_off.connect(self._enter)
+        first.renew.clicked.connect(self._on_renew_requested)
+        first.later.clicked.connect(self._enter)
         first.print_requested.connect(self._on_print_requested)
         first.save_requested.connect(self._on_save_requested)
-        first.join_requested.connect(self._on_join_requested)
+        first.join.clicked.connect(self._on_join_requested)
         self.join.joined.connect(self._on_server_named)
         self.join.again_requested.connect(self._join_by_itself)
         self.join.left.connect(self.begin)
@@ -193,7 +186,12 @@ class Entry(QObject):
 
     def _on_server_named(self, address: str, password: str, place: str) -> None:
         self.join.show_busy(True)
-        self._controller.join(self._folder, address, password, place, self._on_joined, self._on_join_refused, self)
+        self._controller.call(
+            lambda holder: holder.join(self._folder, address, password, place),
+            self._on_joined,
+            self._on_join_refused,
+            self,
+        )
 
     def _on_joined(self, joined: Joined) -> None:
         if joined.refusal is not None:
@@ -209,8 +207,11 @@ class Entry(QObject):
         """Become a station of the library on the server that the environment names."""
         self.waiting.begin(tr("Searching for the clinic's library"))
         self._show(self.waiting)
-        self._controller.join(
-            self._folder, os.environ[DATABASE_VARIABLE], "", "", self._on_joined_by_itself, self._on_unreached, self
+        self._controller.call(
+            lambda holder: holder.join(self._folder, os.environ[DATABASE_VARIABLE], "", ""),
+            self._on_joined_by_itself,
+            self._on_unreached,
+            self,
         )
 
     def _on_joined_by_itself(self, joined: Joined) -> None:
@@ -225,7 +226,7 @@ class Entry(QObject):
 
     def _on_made(self, code: str, name: str, passphrase: str) -> None:
         self.first_start.show_busy(True)
-        self._controller.create(self._folder, code, name, passphrase)
+        self._controller.open(lambda holder: holder.create(self._folder, code, name, passphrase))
 
     def _on_open_requested(self, code: str, passphrase: str, must_remember: bool) -> None:
         self._tried = code
@@ -235,24 +236,27 @@ class Entry(QObject):
         self.log_in.show_busy(True)
         delay = self._delay
         if not self.is_covering:
-            self._controller.open(self._folder, passphrase, code, must_remember, delay)
+            self._controller.open(lambda holder: holder.open(self._folder, passphrase, code, must_remember, delay))
             return
-        self._controller.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
+        self._controller.call(
+            lambda holder: holder.unlock(code, passphrase, delay), self._on_checked, self._on_check_failed, self
+        )
 
     def _on_remembered_requested(self, code: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._controller.open_remembered(self._folder, code)
+        self._controller.open(lambda holder: holder.open_remembered(self._folder, code))
 
     def _on_away_requested(self, code: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._controller.open_away(self._folder, passphrase, code, self._delay)
+        delay = self._delay
+        self._controller.open(lambda holder: holder.open_away(self._folder, passphrase, code, delay))
 
     def _on_recovery_requested(self, code: str, recovery_key: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._controller.open_recovered(self._folder, recovery_key, code, passphrase)
+        self._controller.open(lambda holder: holder.open_recovered(self._folder, recovery_key, code, passphrase))
 
     def _on_checked(self, _nothing: object) -> None:
         self._cover_of = ""
@@ -289,12 +293,10 @@ class Entry(QObject):
 
     def _on_own_chosen(self, passphrase: str) -> None:
         def change(opened: "OpenedLibrary") -> None:
-            from app.storage.opened import slots_of
-
             operator = opened.library.operator
             assert operator is not None  # whoever opens a library is logged in
             assert opened.data_key is not None  # the demonstration has no passphrase
-            slots_of(opened.folder).set_passphrase(opened.data_key, operator.code, passphrase, (operator.name,))
+            opened.slots.set_passphrase(opened.data_key, operator.code, passphrase, (operator.name,))
 
         self.log_in.show_busy(True)
         self._controller.run(change, self._on_own_set, self._on_own_refused, self)
@@ -353,9 +355,7 @@ class Entry(QObject):
     def _on_renew_requested(self) -> None:
         def renew(opened: "OpenedLibrary") -> str:
             assert opened.data_key is not None  # the demonstration's is not asked for
-            from app.storage.opened import slots_of
-
-            return slots_of(opened.folder).renew_recovery_key(opened.data_key)
+            return opened.slots.renew_recovery_key(opened.data_key)
 
         self._controller.run(renew, self._on_renewed, self._on_confirm_failed, self)
 
@@ -392,9 +392,7 @@ def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
     """What keeps that the recovery key was confirmed; then nobody is asked for it any more."""
 
     def confirm(opened: "OpenedLibrary") -> None:
-        from app.storage.opened import slots_of
-
-        slots_of(opened.folder).confirm_recovery_key(typed)
+        opened.slots.confirm_recovery_key(typed)
 
     return confirm
 
@@ -413,6 +411,6 @@ def _too_many() -> str:
 
 
 def _is_end_of_key(typed: str, shown: str) -> bool:
-    from app.storage.keys import is_end_of_recovery_key
+    from app.storage.keys import is_end_of_recovery_key  # cryptography
 
     return is_end_of_recovery_key(typed, shown)

@@ -9,16 +9,17 @@ from collections.abc import Callable
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import COLUMN, EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.key_groups import KeyGroups
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 
@@ -33,11 +34,7 @@ class FirstStartPage(EntryPage):
     save_requested = Signal(str)
     done = Signal()  # the end of the recovery key was typed
     typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
-    renew_requested = Signal()
-    put_off = Signal()
     demonstration_requested = Signal()
-    join_requested = Signal()  # the library that a clinic's stations share
-    look_requested = Signal()  # whether the library that is missing is there now
 
     def __init__(self, shortest: int, is_end_of_key: Callable[[str, str], bool]) -> None:
         super().__init__()
@@ -90,7 +87,7 @@ class FirstStartPage(EntryPage):
         self._build()
         self._connect()
         self._show()
-        self._apply_theme()
+        on_theme(self._fit)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -105,10 +102,7 @@ class FirstStartPage(EntryPage):
         return bool(self._missing)
 
     def show_missing(self, folder: str, waiting: int = 0) -> None:
-        """Say that the library which was in this folder is missing; none: how to make one.
-
-        `waiting` recordings are on this computer until their library is back.
-        """
+        """Report the library missing from `folder`, empty: how to make one; `waiting`: recordings still here."""
         self._missing, self.recovery_key, self._is_asking = folder, "", False
         reported = [tr("It was in {folder} and is no longer there.").format(folder=folder)]
         if waiting:
@@ -149,7 +143,6 @@ class FirstStartPage(EntryPage):
         """Say that the library is being made."""
         self.make.setEnabled(not is_busy)
         self.make.setText(tr("Creating the library") if is_busy else tr("Create library"))
-        self.make.updateGeometry()
 
     def refuse(self, sentence: str) -> None:
         """Say why no library was made."""
@@ -163,7 +156,6 @@ class FirstStartPage(EntryPage):
 
     def _fit(self) -> None:
         """The other ways stand beside each other where there is the room."""
-        px = current_theme().px
         room = min(px(COLUMN), self.width() - px(48))
         needed = self.join.sizeHint().width() + self.demonstration.sizeHint().width() + px(4)
         way = QBoxLayout.Direction.LeftToRight if needed <= room else QBoxLayout.Direction.TopToBottom
@@ -175,47 +167,26 @@ class FirstStartPage(EntryPage):
 
     def _build(self) -> None:
         self._first = Card(padding=24, spacing=16)
-        for part in (self.code, self.name, self.passphrase, self._strength, self.again, self.make):
-            self._first.column.addWidget(part)
+        lay_out(self._first.column, self.code, self.name, self.passphrase, self._strength, self.again, self.make)
         self._other_ways = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        for way in (self.join, self.demonstration):
-            self._other_ways.addWidget(way, 0, Qt.AlignmentFlag.AlignLeft)
-        self._other_ways.addStretch(1)
+        left = Qt.AlignmentFlag.AlignLeft
+        lay_out(self._other_ways, (self.join, 0, left), (self.demonstration, 0, left), 1, spacing=4)
         self._second = Card(padding=24, spacing=16)
-        self._keep_row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._keep_row.addWidget(self.print, 1)
-        self._keep_row.addWidget(self.save, 1)
-        self._second.column.addWidget(self._key_words)
-        self._second.column.addLayout(self._keep_row)
-        self._second.column.addWidget(self.typed)
-        self._second.column.addWidget(self.go)
-        self._second.column.addWidget(self.renew)
-        self._second.column.addWidget(self.later)
+        keep_row = lay_out(QHBoxLayout(), (self.print, 1), (self.save, 1), spacing=12)
+        lay_out(self._second.column, self._key_words, keep_row, self.typed, self.go, self.renew, self.later)
         self._missing_card = Card(padding=24, spacing=16)
-        self._missing_card.column.addWidget(self.look_again)
-        self._missing_card.column.addWidget(self.make_another)
-        for one in (self._missing_title, self.missing_lead, self._missing_card):
-            self.column.addWidget(one)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self._lead)
-        self.column.addWidget(self._first)
-        self.column.addLayout(self._other_ways)
-        self.column.addWidget(self._key_title)
-        self.column.addWidget(self._key_lead)
-        self.column.addWidget(self._asking_lead)
-        self.column.addWidget(self._second)
+        lay_out(self._missing_card.column, self.look_again, self.make_another)
+        lay_out(self.column, self._missing_title, self.missing_lead, self._missing_card)
+        lay_out(self.column, self._title, self._lead, self._first, self._other_ways)
+        lay_out(self.column, self._key_title, self._key_lead, self._asking_lead, self._second)
 
     def _connect(self) -> None:
-        self.look_again.clicked.connect(self.look_requested)
         self.make_another.clicked.connect(self._on_make_another)
         self.make.clicked.connect(self._on_make)
         self.demonstration.clicked.connect(self.demonstration_requested)
-        self.join.clicked.connect(self.join_requested)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.go.clicked.connect(self._on_go)
-        self.renew.clicked.connect(self.renew_requested)
-        self.later.clicked.connect(self.put_off)
         self.typed.line_edit.returnPressed.connect(self._on_go)
         self.typed.edited.connect(self._on_typed)
         for field in (self.code, self.name, self.passphrase, self.again):
@@ -294,9 +265,3 @@ class FirstStartPage(EntryPage):
         self._key_words.show_groups([])
         self.typed.set_text("")
         self.done.emit()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._keep_row.setSpacing(px(12))
-        self._other_ways.setSpacing(px(4))
-        self._fit()

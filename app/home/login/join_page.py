@@ -8,10 +8,11 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.server_fields import ServerFields
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -43,7 +44,7 @@ class JoinPage(EntryPage):
         self._build()
         self._connect()
         self.ask()
-        self._apply_theme()
+        scaled(self._quiet.setSpacing, 12)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -80,22 +81,15 @@ class JoinPage(EntryPage):
         self.join.setText(tr("Joining") if is_busy else tr("Join"))
         for part in (self.join, *self.server.fields, self.back, self.demonstration):
             part.setEnabled(not is_busy)
-        self.join.updateGeometry()
 
     def focus(self) -> None:
         (self.server.address if self.again.isHidden() else self.again).setFocus()
 
     def _build(self) -> None:
         self._card = Card(padding=24, spacing=16)
-        for part in (*self.server.fields, self._hint, self.join):
-            self._card.column.addWidget(part)
-        self._quiet = QHBoxLayout()
-        self._quiet.addWidget(self.back)
-        self._quiet.addWidget(self.demonstration)
-        self._quiet.addStretch(1)
-        for block in (self._title, self.lead, self._card, self.again):
-            self.column.addWidget(block)
-        self.column.addLayout(self._quiet)
+        lay_out(self._card.column, *self.server.fields, self._hint, self.join)
+        self._quiet = lay_out(QHBoxLayout(), self.back, self.demonstration, 1)
+        lay_out(self.column, self._title, self.lead, self._card, self.again, self._quiet)
 
     def _connect(self) -> None:
         self.join.clicked.connect(self._on_join)
@@ -114,7 +108,3 @@ class JoinPage(EntryPage):
     def _on_join(self) -> None:
         if self.join.isEnabled() and self.server.is_complete:
             self.joined.emit(*self.server.reported)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._quiet.setSpacing(px(12))

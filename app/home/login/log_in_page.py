@@ -11,13 +11,13 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording.translation import tr
@@ -70,7 +70,6 @@ class LogInPage(EntryPage):
         self._connect()
         self.show_library("")
         self._show()
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -174,37 +173,16 @@ class LogInPage(EntryPage):
         return self.recovery_key if self._is_recovering else self.passphrase
 
     def _build(self) -> None:
-        row = QHBoxLayout(self._recording)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(IconMark(Icon.RECORDING, 24))
-        row.addWidget(self._recording_words, 1)
+        lay_out(QHBoxLayout(self._recording), IconMark(Icon.RECORDING, 24), (self._recording_words, 1), margins=0)
         self._card = Card(padding=24, spacing=16)
-        who = QVBoxLayout()
-        who.addWidget(self.operator_label)
-        who.addWidget(self.operator)
-        self._who = who
-        self._card.column.addLayout(who)
-        self._card.column.addWidget(self.recovery_key)
-        self._card.column.addWidget(self.passphrase)
-        self._card.column.addWidget(self.new_passphrase)
-        self._card.column.addWidget(self._strength)
-        self._card.column.addWidget(self.again)
-        self._card.column.addWidget(self.remember)
-        self._card.column.addWidget(self.go)
-        self._card.column.addWidget(self.work_away)
-        self._card.column.addWidget(self.use_remembered)
-        self._quiet = QVBoxLayout()
-        for button in (self.use_recovery, self.leave, self.demonstration):
-            line = QHBoxLayout()
-            line.addWidget(button)
-            line.addStretch(1)
-            self._quiet.addLayout(line)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self.library)
-        self.column.addWidget(self._why_own)
-        self.column.addWidget(self._recording)
-        self.column.addWidget(self._card)
-        self.column.addLayout(self._quiet)
+        who = lay_out(QVBoxLayout(), self.operator_label, self.operator, spacing=6)
+        lay_out(self._card.column, who, self.recovery_key, self.passphrase, self.new_passphrase)
+        lay_out(
+            self._card.column, self._strength, self.again, self.remember, self.go, self.work_away, self.use_remembered
+        )
+        lines = (lay_out(QHBoxLayout(), one, 1) for one in (self.use_recovery, self.leave, self.demonstration))
+        quiet = lay_out(QVBoxLayout(), *lines, spacing=4)
+        lay_out(self.column, self._title, self.library, self._why_own, self._recording, self._card, quiet)
 
     def _connect(self) -> None:
         self.go.clicked.connect(self._on_go)
@@ -267,7 +245,6 @@ class LogInPage(EntryPage):
             words = tr("Next try in {seconds} s").format(seconds=math.ceil(self._left_s))
         self.go.setText(words)
         self.go.setAccessibleName(words)
-        self.go.updateGeometry()
         self.go.update()
 
     def _on_go(self) -> None:
@@ -316,9 +293,3 @@ class LogInPage(EntryPage):
         if self._left_s == 0:
             self._second.stop()
         self._show_go()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self._who.setSpacing(px(6))
-        self._quiet.setSpacing(px(4))

@@ -80,10 +80,7 @@ class PatientsAtHome(QObject):
         return self._reading.visits(_now()) if self._reading is not None else ()
 
     def read(self, required: UUID | None = None, *, is_deleted_here: bool = False) -> None:
-        """Read the patients again, and choose one of them, else the one that was chosen.
-
-        Where that one was deleted, it is stated by whom, but for `is_deleted_here`.
-        """
+        """Read the patients and choose `required`, else the former one; who deleted it is shown, unless here."""
         self._is_forgotten = False
         shown = None if is_deleted_here else self.patient
 
@@ -165,10 +162,7 @@ class PatientsAtHome(QObject):
         return patient_line(patient, now, patient.id in self._undecided, self._changes.get(patient.id))
 
     def _look_for_changes(self) -> None:
-        """Read what has changed of the patients in sight, one at a time: somebody may choose one meanwhile.
-
-        Of all thousands it would take minutes.
-        """
+        """Read changes of the patients in sight only, one at a time; thousands would take minutes."""
         seen = [line.id for line in self._page.patients.in_sight]
         one = next((own for own in seen if own in self._patients and own not in self._fresh), None)
         if one is None or self._is_looking or self._is_forgotten:

@@ -4,57 +4,34 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import Signal
 
 from app.home.patients.reading import compute_courses
 from app.system.progress import Report
 from app.wording.translation import tr, tr_n
-from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
 
 
-class ComputingCourses(QObject):
-    """One computation at a time.
+class ComputingCourses(LongWork):
+    """One computation at a time."""
 
-    Signals
-    -------
-    working
-        It began; what is being done, in words.
-    progressed
-        How much of it is done, 0 to 1, and what is looked at.
-    left
-        It is over, however it ended.
-    reported
-        What could not be done, and what to do.
-    """
-
-    working = Signal(str)
-    progressed = Signal(float, str)
-    left = Signal()
-    reported = Signal(str, str)
-
-    def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
-        self.is_working = False
+    left = Signal()  # it is over, however it ended
+    reported = Signal(str, str)  # what could not be done, and what to do
 
     def begin(self, missing: Sequence[UUID]) -> None:
         def work(opened: "OpenedLibrary", report: Report) -> int:
             return compute_courses(opened, missing, report)
 
-        self.is_working = True
-        self.working.emit(tr("Calculating visits"))
+        self._begin(tr("Calculating visits"))
         self._controller.run_long(work, self._on_computed, self._on_refused, self._on_progressed, self)
 
     def stop(self) -> None:
         self._controller.stop_long()
         self._leave()
         self.reported.emit(tr("Stopped."), tr("Visits calculated so far stay in Progress."))
-
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
 
     def _leave(self) -> None:
         self.is_working = False

@@ -26,18 +26,10 @@ class _Asked(NamedTuple):
 
 
 class Deleting(QObject):
-    """The last deletion is the one that `undo` takes back.
+    """The last deletion is the one that `undo` takes back."""
 
-    Signals
-    -------
-    done
-        What was deleted, in a sentence.
-    undone
-        The id of the patient who came back, or whose session did.
-    """
-
-    done = Signal(str)
-    undone = Signal(object)
+    done = Signal(str)  # what was deleted, in a sentence
+    undone = Signal(object)  # the id of the patient who came back, or whose session did
     refused = Signal(str, str)
 
     def __init__(self, controller: LibraryController, parent: QWidget) -> None:

@@ -3,14 +3,15 @@
 import datetime
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.editing.words import by_words
 from app.storage.stored import KEPT_DELETED, WhatGoes
-from app.theme.current import current_theme
+from app.theme.current import px
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.dates import date
@@ -48,20 +49,10 @@ class DeletionDialog(QDialog):
         self.cancel.setFocus()
 
     def _build(self, parent: QWidget) -> None:
-        buttons = QHBoxLayout()
-        buttons.addWidget(self.delete)
-        buttons.addStretch(1)
-        buttons.addWidget(self.cancel)
-        column = QVBoxLayout(self)
-        for part in (self._title, self.goes, self.others, self.until):
-            column.addWidget(part)
-        column.addLayout(buttons)
-        px, colours = current_theme().px, current_theme().colours
-        column.setContentsMargins(px(EDGE), px(20), px(EDGE), px(20))
-        column.setSpacing(px(12))
-        palette = self.palette()
-        palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
-        self.setPalette(palette)
+        buttons = lay_out(QHBoxLayout(), self.delete, 1, self.cancel)
+        column = lay_out(QVBoxLayout(self), self._title, self.goes, self.others, self.until, buttons)
+        lay_out(column, margins=(EDGE, 20, EDGE, 20), spacing=12)
+        set_ground(self, Ground("surface", radius=0, inset=0))
         width = min(px(WIDTH), parent.window().width() - px(EDGE))
         self.resize(width, column.totalHeightForWidth(width))
 

@@ -10,22 +10,24 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
+from app.cohort.batch.again import AgainTask, again_task
+from app.cohort.batch.executors import ProcessExecutor, processors
+from app.demonstration import patients
+from app.demonstration.patients import SimulatedVisit
+from app.demonstration.recording import record_beside, take_in
+from app.storage.kept_analyses import bare
+from app.storage.opened import OpenedLibrary
 from app.widgets.progress_strip import ProgressStrip
+from app.wizard.resuming import session_to_analyse
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
-
-if TYPE_CHECKING:  # what computes is imported once a demonstration is opened
-    from app.cohort.batch.again import AgainTask
-    from app.cohort.batch.executors import ProcessExecutor
-    from app.demonstration.patients import SimulatedVisit
-    from app.storage.opened import OpenedLibrary
-    from core.session import Session
+from core.session import Session
 
 Keep = Callable[[bytes], None]
 
@@ -44,18 +46,10 @@ class _Answer(NamedTuple):
 
 
 class FillingDemonstration(QObject):
-    """One library at a time; another, or `stop`, ends what goes on for the one before.
+    """One library at a time; another, or `stop`, ends what goes on for the one before."""
 
-    Signals
-    -------
-    changed
-        A visit is ready.
-    reported
-        What could not be done, and what follows.
-    """
-
-    changed = Signal()
-    reported = Signal(str, str)
+    changed = Signal()  # A visit is ready
+    reported = Signal(str, str)  # what could not be done, and what follows
     _answered = Signal(object)  # from the threads that wait for the processes
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
@@ -82,11 +76,8 @@ class FillingDemonstration(QObject):
         self.stop()
         if not state.is_demonstration:
             return
-        from app.cohort.batch.executors import ProcessExecutor, processors
-        from app.demonstration.patients import simulated_patients
-
-        patients = simulated_patients(datetime.datetime.now().astimezone())
-        self._waiting.extend(visit for patient in patients for visit in patient.visits)
+        simulated = patients.simulated_patients(datetime.datetime.now().astimezone())
+        self._waiting.extend(visit for patient in simulated for visit in patient.visits)
         self._codes = frozenset(visit.code for visit in self._waiting)
         self._total, self._ready, self._failed = len(self._waiting), 0, 0
         count = min(processors(), self._total)
@@ -109,23 +100,19 @@ class FillingDemonstration(QObject):
 
     def _begin_visit(self) -> None:
         """Have the next visit recorded. Each goes its way alone: as many are under way as there are processes."""
-        from app.demonstration.recording import record_beside
-
         if self._waiting:
             visit = self._waiting.popleft()
             self._ask(partial(self._take_in, visit), record_beside, visit)
 
-    def _take_in(self, visit: "SimulatedVisit", session: "Session") -> None:
+    def _take_in(self, visit: SimulatedVisit, session: Session) -> None:
         """Write what was recorded into the library, and read it back to be analysed."""
 
-        def take_in(opened: "OpenedLibrary") -> "tuple[AgainTask, Keep] | None":
+        def taken_in(opened: OpenedLibrary) -> tuple[AgainTask, Keep] | None:
             return _taken_in(opened, visit, session)
 
-        self._controller.run(take_in, self._on_taken_in, self._on_refused, self)
+        self._controller.run(taken_in, self._on_taken_in, self._on_refused, self)
 
-    def _on_taken_in(self, found: "tuple[AgainTask, Keep] | None") -> None:
-        from app.cohort.batch.again import again_task
-
+    def _on_taken_in(self, found: tuple[AgainTask, Keep] | None) -> None:
         if found is None:
             self._on_kept(None)
         elif self.is_busy:
@@ -133,7 +120,7 @@ class FillingDemonstration(QObject):
             self._ask(partial(self._keep, keep), again_task, task)
 
     def _keep(self, keep: Keep, content: bytes) -> None:
-        def kept(_opened: "OpenedLibrary") -> None:
+        def kept(_opened: OpenedLibrary) -> None:
             keep(content)
 
         self._controller.run(kept, self._on_kept, self._on_refused, self)
@@ -188,13 +175,8 @@ class FillingDemonstration(QObject):
         answer.then(given)
 
 
-def _taken_in(opened: "OpenedLibrary", visit: "SimulatedVisit", session: "Session") -> "tuple[AgainTask, Keep] | None":
+def _taken_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> tuple[AgainTask, Keep] | None:
     """What is to be analysed of a visit, as it came out of its journals, and what keeps what comes of it."""
-    from app.cohort.batch.again import AgainTask
-    from app.demonstration.recording import take_in
-    from app.storage.kept_analyses import bare
-    from app.wizard.resuming import session_to_analyse
-
     session_id: UUID = take_in(opened, visit, session)
     found = session_to_analyse(opened, session_id)
     if found is None:

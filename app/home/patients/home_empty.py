@@ -1,18 +1,19 @@
 """What is shown in place of patients while there are none: how to begin, what a session needs and how it goes."""
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QFontMetrics, QPainter
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 CIRCLE = 26
@@ -28,8 +29,7 @@ class EmptyLibrary(Card):
 
     def __init__(self) -> None:
         self._ways, self._needs = QBoxLayout(QBoxLayout.Direction.LeftToRight), QGridLayout()
-        self._edge = EDGE
-        super().__init__()
+        super().__init__(spacing=GAP)
         self.new_patient = Button(tr("New patient"), ButtonKind.PRIMARY, Icon.ADD, tr("Ctrl N"), height=56)
         self.demonstration = Button(tr("Open demonstration"), ButtonKind.SECONDARY, Icon.PLAY, height=56)
         self.importing = Button(tr("Import recordings"), ButtonKind.SECONDARY, Icon.IMPORT, height=56)
@@ -38,28 +38,20 @@ class EmptyLibrary(Card):
             "Start with a code instead of a name. A first session takes about five minutes. The "
             "demonstration guides you through one, without sensors."
         )
-        for button in self.buttons:
-            self._ways.addWidget(button)
-        self._ways.addStretch(1)
+        lay_out(self._ways, *self.buttons, 1, spacing=GAP)
         self._need_parts = [
             self._need(Icon.WAVE, tr("Six sensors"), tr("thigh, shank, foot; any orientation")),
             self._need(Icon.ARROW, tr("Eight-metre walkway"), tr("ten strides per leg")),
             self._need(Icon.CHECK, tr("No poses, no tape measure"), tr("the patient moves the legs freely")),
         ]
-        self.column.addStretch(2)
-        self.column.addWidget(Text(tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
+        lay_out(self.column, 2, Text(tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
         self._begin = Text(begin, size=16, tone="ink2", wraps=True)
+        scaled(self._begin.setMaximumWidth, WIDEST_WORDS)
         begin_row = QHBoxLayout()  # which knows how high the words are at their greatest width
-        begin_row.addWidget(self._begin, 1)
-        begin_row.addStretch(0)
-        self.column.addLayout(begin_row)
-        self.column.addLayout(self._ways)
-        self.column.addStretch(2)
-        self.column.addWidget(Text(tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True))
-        self.column.addLayout(self._needs)
-        self.column.addStretch(1)
-        self.column.addWidget(self.steps)
-        self.column.addStretch(2)
+        lay_out(begin_row, (self._begin, 1), 0)
+        needs = Text(tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True)
+        lay_out(self.column, begin_row, self._ways, 2, needs, self._needs, 1, self.steps, 2)
+        scaled(self._needs.setSpacing, GAP)
         self.set_room(1000)
 
     @property
@@ -68,9 +60,9 @@ class EmptyLibrary(Card):
 
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
-        px = current_theme().px
-        self._edge = EDGE if width >= WIDE_FROM else NARROW_EDGE
-        room = px(width - 2 * PAGE_EDGE) - 2 * px(self._edge)
+        edge = EDGE if width >= WIDE_FROM else NARROW_EDGE
+        scaled(self.column.setContentsMargins, edge, 24, edge, 24)
+        room = px(width - 2 * PAGE_EDGE) - 2 * px(edge)
         beside = sum(button.sizeHint().width() for button in self.buttons) + (len(self.buttons) - 1) * px(GAP)
         way = QBoxLayout.Direction.LeftToRight if beside <= room else QBoxLayout.Direction.TopToBottom
         self._ways.setDirection(way)
@@ -79,31 +71,17 @@ class EmptyLibrary(Card):
             self._needs.addWidget(part, number if is_narrow else 0, 0 if is_narrow else number)
         hear_as_laid_out(self)
         self.steps.set_room(room)
-        self._begin.setMaximumWidth(px(WIDEST_WORDS))
-        self._apply_theme()
 
     def _need(self, icon: Icon, what: str, more: str) -> QWidget:
         part = QWidget()
-        row = QHBoxLayout(part)
-        row.setContentsMargins(0, 0, 0, 0)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(Text(what, weight=SEMIBOLD, wraps=True))
-        words.addWidget(Text(more, tone="ink2", wraps=True))
-        row.addWidget(IconMark(icon, size=24), 0, Qt.AlignmentFlag.AlignTop)
-        row.addLayout(words, 1)
+        words = lay_out(
+            QVBoxLayout(), Text(what, weight=SEMIBOLD, wraps=True), Text(more, tone="ink2", wraps=True), spacing=0
+        )
+        lay_out(QHBoxLayout(part), (IconMark(icon, size=24), 0, Qt.AlignmentFlag.AlignTop), (words, 1), margins=0)
         return part
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self.column.setContentsMargins(px(self._edge), px(24), px(self._edge), px(24))
-        self.column.setSpacing(px(GAP))
-        self._ways.setSpacing(px(GAP))
-        self._needs.setSpacing(px(GAP))
 
-
-class StepsPreview(Themed):
+class StepsPreview(Painted):
     """The seven steps of a session on a line, and how long each takes."""
 
     def __init__(self) -> None:
@@ -118,21 +96,18 @@ class StepsPreview(Themed):
             (tr("Results"), tr("immediately")),
             (tr("Report"), tr("immediately")),
         )
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(tr("Steps of a session"))
         self.setAccessibleDescription(", ".join(f"{name} {time}" for name, time in self.steps))
 
     def set_room(self, width: int) -> None:
         """Take as many rows as the words need in a width, in px of the screen."""
         self._rows = next((rows for rows in (1, 2, 4) if self._wide(rows) <= width), len(self.steps))
-        self._apply_theme()
+        self.updateGeometry()
+        self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(self._wide(self._rows), self._rows * px(CIRCLE + 8 + 2 * LINE) + (self._rows - 1) * px(12))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
         theme, texts = current_theme(), []
@@ -148,10 +123,8 @@ class StepsPreview(Themed):
             ]
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, half = current_theme(), px(CIRCLE) / 2
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1.25))
         for number in range(len(self.steps)):
             centre = self._place(number) + QPointF(half, half)
@@ -159,8 +132,6 @@ class StepsPreview(Themed):
             if number + 1 < len(self.steps) and (number + 1) % self._in_row:
                 following = self._place(number + 1) + QPointF(0, half)
                 painter.drawLine(centre + QPointF(half, 0), following)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _wide(self, rows: int) -> int:
         """How wide so many rows are."""
@@ -175,9 +146,4 @@ class StepsPreview(Themed):
     def _place(self, number: int) -> QPointF:
         """The upper left corner of a step."""
         row, column = divmod(number, self._in_row)
-        px = current_theme().px
         return QPointF(column * self.width() / self._in_row, row * px(CIRCLE + 8 + 2 * LINE + 12))
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()

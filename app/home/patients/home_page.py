@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 from uuid import UUID
 
-from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QApplication,
-    QFrame,
     QHBoxLayout,
     QLineEdit,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -21,12 +19,13 @@ from app.home.patients.home_empty import EmptyLibrary
 from app.home.patients.patient_panel import PatientPanel
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextStep
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon, paint_icon
+from app.widgets.lay_out import lay_out
 from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 from core.goals import Goal
 
@@ -36,11 +35,11 @@ LIST, WIDE_LIST = 260, 320
 WIDE_FROM = 1400  # px of the design: the list takes more
 ONE_BELOW = 860  # the list or the patient
 PANEL_AT_LEAST = 320
-WIDEST = 16_777_215  # Qt's own
+WIDEST = 8_000_000  # Qt's own, at 200 %
 PATIENTS, PATIENT = "patients", "patient"
 
 
-class HomePage(Themed):
+class HomePage(QWidget):
     """Knows lines and ids. Typing narrows the list down; the arrow keys choose from it while typing goes on.
 
     Where there is little room, the list or the patient is in sight.
@@ -49,17 +48,14 @@ class HomePage(Themed):
     patient_chosen = Signal(object)  # UUID or None
     session_opened = Signal(object)  # UUID
     new_session_requested = Signal()  # Enter
-    new_patient_requested = Signal()
     demonstration_requested = Signal()
-    import_requested = Signal()
-    computing_requested = Signal()  # of the visits that have no figures yet
     patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
         self._patients: Sequence[PatientLine] | None = None  # not read yet
-        self._is_single, self._list_width = False, LIST
+        self._is_single = False
         self._title = Text(tr("Patients"), size=26, weight=SEMIBOLD)
         self._count = Text(tone="ink2")
         self.search = _Search()
@@ -67,7 +63,7 @@ class HomePage(Themed):
         self.nobody = Text(tr("No patient found. Shorten the search, or add a new patient."), wraps=True)
         self.empty = EmptyLibrary()
         self.panel = PatientPanel()
-        self._panel_room = _PanelRoom(self.panel)
+        self._panel_room = scrolled(self.panel)
         self.view = Segmented(tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
         self._build()
         self._connect()
@@ -75,7 +71,7 @@ class HomePage(Themed):
             self.setTabOrder(before, after)
         self.forget_patients()
         self.show_patient("", "")
-        self._apply_theme()
+        self.set_room(WIDE_FROM - 1)
 
     @property
     def patient_id(self) -> UUID | None:
@@ -150,10 +146,11 @@ class HomePage(Themed):
         """Lay out for a page of this width, in px of the design."""
         self._is_single = is_compact or width < ONE_BELOW
         self.empty.set_room(width)
-        self._list_width = WIDE_LIST if width >= WIDE_FROM else LIST
+        of_list = WIDE_LIST if width >= WIDE_FROM else LIST
+        scaled(self._left_room.setMinimumWidth, of_list)
+        scaled(self._left_room.setMaximumWidth, WIDEST if self._is_single else of_list)
         inside = width - 2 * EDGE
-        self.panel.set_room(inside if self._is_single else inside - GUTTER - self._list_width)
-        self._apply_theme()
+        self.panel.set_room(inside if self._is_single else inside - GUTTER - of_list)
         self._show_parts()
 
     def event(self, event: QEvent) -> bool:
@@ -190,27 +187,21 @@ class HomePage(Themed):
         return super().eventFilter(watched, event)
 
     def _build(self) -> None:
-        heading = QHBoxLayout()
-        heading.addWidget(self._title, 1)
-        heading.addWidget(self._count, 0, Qt.AlignmentFlag.AlignBottom)
+        heading = lay_out(QHBoxLayout(), (self._title, 1), (self._count, 0, Qt.AlignmentFlag.AlignBottom))
         self._left_room = QWidget()
         self._left = QVBoxLayout(self._left_room)
-        self._left.setContentsMargins(0, 0, 0, 0)
-        self._left.addLayout(heading)
-        self._left.addWidget(self.search)
-        self._left.addWidget(self.patients, 1)
-        self._left.addWidget(self.nobody, 1)
+        lay_out(self._left, heading, self.search, (self.patients, 1), (self.nobody, 1), margins=0, spacing=12)
         self._both = QWidget()
-        self._columns = QHBoxLayout(self._both)
-        self._columns.setContentsMargins(0, 0, 0, 0)
-        self._columns.addWidget(self._left_room)
-        self._columns.addWidget(self._panel_room, 1)
+        self._columns = lay_out(
+            QHBoxLayout(self._both), self._left_room, (self._panel_room, 1), margins=0, spacing=GUTTER
+        )
         self._empty_title = Text(tr("Patients"), size=26, weight=SEMIBOLD)
         self._page = QVBoxLayout(self)
         self._page.addWidget(self.view, 0, Qt.AlignmentFlag.AlignLeft)
-        self._page.addWidget(self._empty_title)
-        self._page.addWidget(self.empty, 1)
-        self._page.addWidget(self._both, 1)
+        lay_out(
+            self._page, self._empty_title, (self.empty, 1), (self._both, 1), margins=(EDGE, 12, EDGE, 12), spacing=12
+        )
+        scaled(self._panel_room.setMinimumSize, PANEL_AT_LEAST, PANEL_AT_LEAST)
 
     def _connect(self) -> None:
         self.search.textChanged.connect(self._on_searched)
@@ -219,16 +210,20 @@ class HomePage(Themed):
         self.patients.clicked.connect(self._on_patient_clicked)
         self.view.chosen.connect(self._show_parts)
         self.sessions.opened.connect(self.session_opened)
-        self.sessions.selectionModel().currentRowChanged.connect(self._panel_room.show_row)
+        self.sessions.selectionModel().currentRowChanged.connect(self._show_row)
         self.panel.course.visit_opened.connect(self.session_opened)
-        self.panel.course.computing_requested.connect(self.computing_requested)
-        self.panel.delete_patient_requested.connect(self._on_delete_patient)
-        self.panel.delete_session_requested.connect(self._on_delete_session)
-        self.empty.new_patient.clicked.connect(self.new_patient_requested)
+        self.panel.delete_patient.triggered.connect(self._on_delete_patient)
+        self.panel.delete_session.triggered.connect(self._on_delete_session)
         self.empty.demonstration.clicked.connect(self.demonstration_requested)
-        self.empty.importing.clicked.connect(self.import_requested)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
+
+    def _show_row(self, index: QModelIndex, _before: QModelIndex) -> None:
+        """Have the visit in force in sight, where somebody moves among them."""
+        if index.isValid() and self.sessions.hasFocus():
+            row = self.sessions.visualRect(index)
+            centre = self.sessions.viewport().mapTo(self.panel, row.center())
+            self._panel_room.ensureVisible(centre.x(), centre.y(), 0, row.height())
 
     def _show_parts(self) -> None:
         """The list, the patient, or both; of an empty library neither."""
@@ -280,37 +275,6 @@ class HomePage(Themed):
         if line is not None:
             self.session_deleted.emit(line.id)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._page.setContentsMargins(px(EDGE), px(12), px(EDGE), px(12))
-        self._page.setSpacing(px(12))
-        self._columns.setSpacing(px(GUTTER))
-        self._left.setSpacing(px(12))
-        self._left_room.setMinimumWidth(px(self._list_width))
-        self._left_room.setMaximumWidth(WIDEST if self._is_single else px(self._list_width))
-        self._panel_room.setMinimumSize(px(PANEL_AT_LEAST), px(PANEL_AT_LEAST))
-
-
-class _PanelRoom(QScrollArea):
-    """The patient, who is scrolled as one."""
-
-    def __init__(self, panel: PatientPanel) -> None:
-        super().__init__()
-        self._panel = panel
-        self.setWidgetResizable(True)
-        self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setWidget(panel)
-
-    def show_row(self, index: QModelIndex, _before: QModelIndex) -> None:
-        """Have the visit in force in sight, where somebody moves among them."""
-        table = self._panel.sessions
-        if index.isValid() and table.hasFocus():
-            row = table.visualRect(index)
-            centre = table.viewport().mapTo(self._panel, row.center())
-            self.ensureVisible(centre.x(), centre.y(), 0, row.height())
-
 
 class _Search(QLineEdit):
     """The search, with its sign and its key inside."""
@@ -320,14 +284,8 @@ class _Search(QLineEdit):
         self.setAccessibleName(tr("Search patients"))
         self.setPlaceholderText(tr("Code, year, device"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.textChanged.connect(self._apply_theme)
-        self._apply_theme()
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(200), px(SEARCH_HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        scaled(self.setFixedHeight, SEARCH_HEIGHT)
+        on_theme(self._apply_theme)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
@@ -352,5 +310,3 @@ class _Search(QLineEdit):
         theme = current_theme()
         self.setFont(theme.font(16))
         self.setTextMargins(theme.px(44) - 1, 0, theme.px(12) - 1, 0)  # the frame of a line is 1 px wide
-        self.updateGeometry()
-        self.update()

@@ -13,16 +13,10 @@ from app.workers.refusals import Refusal
 class LibraryNotices(QObject):
     """Two banners: `rollback`, of a library that is older than this computer has seen, and `away`.
 
-    Signals
-    -------
-    log_in_requested
-        The clinic's server answers again.
-    refused
-        Why the older state could not be accepted.
+    `log_in_requested`: the clinic's server answers again.
     """
 
-    log_in_requested = Signal()
-    refused = Signal(str, str)
+    refused = Signal(str, str)  # why the older state could not be accepted
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
@@ -30,7 +24,6 @@ class LibraryNotices(QObject):
         self._state: OpenedState | None = None
         self.rollback, self.away = Banner(), Banner()
         self.rollback.acted.connect(self._on_accepted)
-        self.away.acted.connect(self.log_in_requested)
         controller.server_back.connect(self._on_server_back)
 
     def show(self, state: OpenedState) -> None:
@@ -61,8 +54,10 @@ class LibraryNotices(QObject):
         )
 
     def _on_accepted(self) -> None:
-        if self._state is not None and self._state.rollback is not None:
-            self._controller.accept_rollback(self._state.rollback, self._on_noted, self._on_refused, self)
+        if self._state is not None and (rollback := self._state.rollback) is not None:
+            self._controller.call(
+                lambda holder: holder.accept_rollback(rollback), self._on_noted, self._on_refused, self
+            )
 
     def _on_noted(self, _nothing: object) -> None:
         self.rollback.hide()
@@ -101,8 +96,7 @@ class LibraryNotices(QObject):
 
 
 def still_away_words(why: Refusal) -> tuple[str, str]:
-    """What is stated about sessions that the clinic's server did not take; the reason and what to do about it come
-    last."""
+    """Give the words about sessions that the clinic's server refused: the reason, then the remedy."""
     what = tr("Offline sessions are still on this computer only.")
     then = tr("No data are lost. Each login tries again to send them to the server.")
     return what, f"{then} {why.what} {why.remedy}"

@@ -22,13 +22,14 @@ from app.summary.course_lanes import (
 from app.summary.course_words import NextKind, NextStep, value_in_words
 from app.summary.progress_words import progress_words
 from app.summary.visits import condition_in_words
-from app.theme.current import current_theme
+from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.header import Tag
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.line_list import LineList, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
@@ -51,19 +52,9 @@ ICONS = {
 
 
 class PatientPanel(TallPage):
-    """Passive: it is shown visits, lines and what is next. It is as high as all of them, and whoever holds it scrolls.
+    """Passive: it shows visits, lines and what is next, as high as all of them; its holder scrolls."""
 
-    Signals
-    -------
-    next_requested
-        The next step, which is to be taken.
-    """
-
-    next_requested = Signal(object)
-    goals_requested = Signal()
-    analysing_requested = Signal()  # again, of this patient's sessions
-    delete_patient_requested = Signal()
-    delete_session_requested = Signal()
+    next_requested = Signal(object)  # the next step, which is to be taken
 
     def __init__(self) -> None:
         super().__init__()
@@ -96,7 +87,7 @@ class PatientPanel(TallPage):
         self.none_yet.setText(tr("No visit yet."))
         self._build()
         self._connect()
-        self._apply_theme()
+        on_theme(self._fit_sessions)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -172,16 +163,9 @@ class PatientPanel(TallPage):
             self.next_requested.emit(self._next)
 
     def _build(self) -> None:
-        self._who = QHBoxLayout()
-        self._who.addWidget(self.code)
-        self._who.addWidget(self.person, 1)
-        self._who.addWidget(self.simulated)
-        self._who.addWidget(self.more)
+        self._who = lay_out(QHBoxLayout(), self.code, (self.person, 1), self.simulated, self.more)
         self.next_room = QWidget()
-        self._next_row = QHBoxLayout(self.next_room)
-        self._next_row.setContentsMargins(0, 0, 0, 0)
-        self._next_row.addWidget(self.go)
-        self._next_row.addWidget(self.reason, 1)
+        self._next_row = lay_out(QHBoxLayout(self.next_room), self.go, (self.reason, 1), margins=0)
         head = self.course.head
         title = Text(tr("Progress"), size=16, weight=SEMIBOLD)
         for number, part in enumerate((title, self.shown, self.condition, self.count, self.goals)):
@@ -191,27 +175,13 @@ class PatientPanel(TallPage):
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.sessions.fitted.connect(self._fit_sessions)
         self.visits_card = Card(padding=0)
-        self.visits_card.column.addWidget(self.sessions)
-        self.visits_card.column.addWidget(self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._statement = QVBoxLayout()
-        self._statement.addWidget(self.sentence)
-        self._statement.addWidget(self.second)
-        self.column.setContentsMargins(0, 0, 0, 0)
+        lay_out(self.visits_card.column, self.sessions, (self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter))
+        self._statement = lay_out(QVBoxLayout(), self.sentence, self.second, spacing=2)
         self.column.addLayout(self._who)
-        self.column.addLayout(self._statement)
-        self.column.addWidget(self.next_room)
-        self.column.addWidget(self.course)
-        self.column.addWidget(self.visits_card)
-        self.column.addStretch(1)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.column.setSpacing(px(12))
-        self._statement.setSpacing(px(2))
+        lay_out(self.column, self._statement, self.next_room, self.course, self.visits_card, 1, margins=0, spacing=12)
         for row in (self._who, self._next_row):
-            row.setSpacing(px(16))
-        self.none_yet.setMinimumHeight(px(72))
-        self._fit_sessions()
+            scaled(row.setSpacing, 16)
+        scaled(self.none_yet.setMinimumHeight, 72)
 
     def _fit_sessions(self) -> None:
         """As high as all lines are: it is the panel that scrolls."""
@@ -220,10 +190,6 @@ class PatientPanel(TallPage):
 
     def _connect(self) -> None:
         self.more.clicked.connect(self._on_more)
-        self.analyse_again.triggered.connect(self.analysing_requested)
-        self.delete_patient.triggered.connect(self.delete_patient_requested)
-        self.delete_session.triggered.connect(self.delete_session_requested)
-        self.goals.clicked.connect(self.goals_requested)
         self.condition.currentIndexChanged.connect(self._show_lanes)
         self.shown.chosen.connect(self._show_lanes)
         self.sessions.chosen.connect(self._on_session_chosen)

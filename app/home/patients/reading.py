@@ -100,13 +100,7 @@ def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:
-    """Evaluate sessions, so that what the course shows of them is kept.
-
-    Returns
-    -------
-    int
-        How many could not be read.
-    """
+    """Evaluate sessions to keep what the course shows of them; give how many could not be read."""
     unread = 0
     for number, session_id in enumerate(session_ids):
         at = number / len(session_ids)

@@ -72,8 +72,7 @@ class Recovering(QObject):
         banner.acted.connect(self._choose_folder)
 
     def begin(self, state: OpenedState) -> None:
-        """Bring back what `state` names, and say what is still to be decided; `recovered` follows where there was
-        anything to bring back."""
+        """Recover what `state` names and report undecided walks; `recovered` follows if anything was."""
         self._waiting, self._lost, self._brought_home = [], [], state.brought_home
         interrupted = state.interrupted
         if not interrupted:

@@ -18,6 +18,7 @@ from app.widgets.action_bar import BarAction, BarState
 from app.wizard.resuming import sessions_of_condition
 from app.wording.translation import filled, tr
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 from core.verdicts.own_figures import OwnFigures
 from core.verdicts.sigmas import in_use, use
 from devices.files.refusal import FileRefusedError
@@ -26,35 +27,17 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
 
 
-class Repeatability(QObject):
-    """One study at a time.
+class Repeatability(LongWork):
+    """One study at a time."""
 
-    Signals
-    -------
-    changed
-        The bar shows something else.
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and of whom.
-    done
-        It ended.
-    chosen
-        Differences are judged by other figures from now on.
-    """
-
-    changed = Signal()
-    working = Signal(str)
-    progressed = Signal(float, str)
-    done = Signal()
-    chosen = Signal()
+    changed = Signal()  # the bar shows something else
+    done = Signal()  # it ended
+    chosen = Signal()  # differences are judged by other figures from now on
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
         self._dialog: QFileDialog | None = None
         self._is_demonstration = False
-        self.is_working = False
         self.page = RepeatabilityPage()
 
     @property
@@ -81,8 +64,7 @@ class Repeatability(QObject):
 
     def calculate(self) -> None:
         """Find the figures from the library's sessions."""
-        self.is_working = True
-        self.working.emit(tr("Calculating repeatability"))
+        self._begin(tr("Calculating repeatability"))
         self._controller.run_long(_studied, self._on_studied, self._on_refused, self._on_progressed, self)
 
     def stop(self) -> None:
@@ -123,9 +105,6 @@ class Repeatability(QObject):
         if own is not None and self.page.own is None:
             self.page.show_study(own, ())
         self.changed.emit()
-
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
 
     def _on_studied(self, found: StudyResult) -> None:
         self.page.show_study(found.own, found.notes)

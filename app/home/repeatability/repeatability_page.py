@@ -3,26 +3,25 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.cohort.repeatability.people import CONDITION
 from app.cohort.repeatability.table import ATTACHED_AGAIN, BETWEEN_LEGS, RepeatabilityRow, rows_of
 from app.summary.report_dates import day
-from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, RIGHT, TextCell
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.verdicts.own_figures import MIN_PEOPLE, MIN_PEOPLE_SETTLED, Between, OwnFigures
 
 MARGIN, GAP = 24, 12
 
 
-class RepeatabilityPage(Themed):
+class RepeatabilityPage(QWidget):
     """Shows one study at a time, and the figures in use."""
 
     def __init__(self) -> None:
@@ -40,15 +39,13 @@ class RepeatabilityPage(Themed):
         self.notes = Text(tone="ink2", wraps=True)
         self.table = CellTable(tr("Repeatability"))
         self._card = Card()
-        for part in (self.sentence, self.notes, self.table):
-            self._card.column.addWidget(part)
-        self._column = QVBoxLayout(self)
+        lay_out(self._card.column, self.sentence, self.notes, self.table)
+        column = QVBoxLayout(self)
         for widget in (self._title, self._lead, self.used, self.refusal, self._card):
-            self._column.addWidget(widget)
-        self._column.addStretch(1)
+            column.addWidget(widget)
+        lay_out(column, 1, margins=(MARGIN, 16, MARGIN, GAP), spacing=GAP)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.forget()
-        self._apply_theme()
 
     def focus(self) -> None:
         if self.own is not None:
@@ -78,11 +75,6 @@ class RepeatabilityPage(Themed):
         self.table.show_rows(*study_table(own))
         self.table.setAccessibleDescription(self.sentence.text())
         self._card.show()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
-        self._column.setSpacing(px(GAP))
 
 
 def study_sentence(own: OwnFigures) -> str:

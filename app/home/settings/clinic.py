@@ -41,7 +41,7 @@ class ClinicSettings(QObject):
         station.stop_requested.connect(self._on_stop_requested)
         station.back_requested.connect(self._on_back_requested)
         more.move_requested.connect(self._on_move_requested)
-        more.place_requested.connect(self._on_place_requested)
+        more.choose.clicked.connect(self._on_place_requested)
 
     def show_library(self, state: OpenedState) -> None:
         """Show what the operator who is logged in may do with the library that was opened."""
@@ -106,8 +106,12 @@ class ClinicSettings(QObject):
             self._page.more_stations.server.refuse(sentence, is_place=True)
             return
         self._page.more_stations.show_move(tr("Moving"), is_running=True)
-        self._controller.move_to_server(
-            address, password, place, self._on_moved, self._on_move_refused, self._on_move_progressed, self
+        self._controller.reopen(
+            lambda holder, report: holder.move_to_server(address, password, place, report),
+            self._on_moved,
+            self._on_move_refused,
+            self._on_move_progressed,
+            self,
         )
 
     def _on_place_requested(self) -> None:
@@ -133,7 +137,13 @@ class ClinicSettings(QObject):
 
     def _on_back_requested(self) -> None:
         self._page.station.show_back(tr("Moving back"), is_running=True)
-        self._controller.bring_back(self._on_back, self._on_back_refused, self._on_back_progressed, self)
+        self._controller.reopen(
+            lambda holder, report: holder.bring_back(report),
+            self._on_back,
+            self._on_back_refused,
+            self._on_back_progressed,
+            self,
+        )
 
     def _on_back_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Moving back, {percent} %").format(percent=round(share * 100))

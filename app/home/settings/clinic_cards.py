@@ -103,7 +103,6 @@ class StationCard(SettingsCard):
         self._is_copying = is_running
         _say(self.copy_stated, sentence)
         self.copy.setText(tr("Stop") if is_running else tr("Copy to a folder"))
-        self.copy.updateGeometry()
         self.back.setEnabled(not is_running)
 
     def show_back(self, sentence: str, *, is_running: bool = False) -> None:
@@ -136,7 +135,6 @@ class MoreStationsCard(SettingsCard):
     """How a library in a folder gets to the server of a clinic."""
 
     move_requested = Signal(str, str, str)  # address, password, place
-    place_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__(tr("Several workstations"))
@@ -159,7 +157,6 @@ class MoreStationsCard(SettingsCard):
         self.add_left(self.choose)
         self.fill(self.stated)
         self.add_left(self.move_there)
-        self.choose.clicked.connect(self.place_requested)
         self.move_there.clicked.connect(self._on_move)
         self.show_move("")
 

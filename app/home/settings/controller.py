@@ -121,21 +121,21 @@ class SettingsController(QObject):
 
     def _connect(self) -> None:
         page = self.page
-        page.language_chosen.connect(self._on_language_chosen)
-        page.scheme_chosen.connect(self._on_scheme_chosen)
+        page.language.chosen.connect(self._on_language_chosen)
+        page.scheme.chosen.connect(self._on_scheme_chosen)
         page.scale_chosen.connect(self._on_scale_chosen)
         page.side_chosen.connect(self._on_side_chosen)
         page.motion_chosen.connect(self._on_motion_chosen)
-        page.sound_chosen.connect(self._on_sound_chosen)
-        page.prompts_chosen.connect(self._on_prompts_chosen)
+        page.sound.toggled.connect(self._on_sound_chosen)
+        page.prompts.toggled.connect(self._on_prompts_chosen)
         page.passphrase_requested.connect(self._on_passphrase_requested)
-        page.recovery_key_requested.connect(self._on_recovery_key_requested)
+        page.renew.clicked.connect(self._on_recovery_key_requested)
         page.print_requested.connect(self._on_print_requested)
         page.save_requested.connect(self._on_save_requested)
         page.backup_requested.connect(self._on_backup_requested)
-        page.backup_folder_requested.connect(self._on_backup_folder_requested)
+        page.choose_folder.clicked.connect(self._on_backup_folder_requested)
         page.stop_requested.connect(self._on_stop_requested)
-        page.error_report_requested.connect(self._error_report.save)
+        page.report_error.clicked.connect(self._error_report.save)
         page.operators.added.connect(self._on_operator_added)
         page.operators.removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)
@@ -310,7 +310,13 @@ class SettingsController(QObject):
 
     def _on_operator_removed(self, code: str) -> None:
         self.page.operators.show_key_change(tr("Changing the library's key"), is_running=True)
-        self._controller.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
+        self._controller.reopen(
+            lambda holder, report: holder.change_key(code, report),
+            self._on_key_changed,
+            self._on_key_refused,
+            self._on_key_progressed,
+            self,
+        )
 
     def _on_key_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Changing the library's key, {percent} %").format(percent=round(share * 100))

@@ -8,12 +8,13 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, Text
 from app.wording.translation import tr
 
@@ -52,6 +53,7 @@ class OperatorsCard(SettingsCard):
         self.add = Button(tr("Add user"), ButtonKind.SECONDARY, Icon.ADD)
         super().__init__(tr("Users of this library"))
         self.column.addLayout(self.rows)
+        scaled(self.rows.setSpacing, 4)
         self.fill(self.leaving_words)
         self.add_left(self.remove, self.keep)
         self.fill(self.code, self.name, Text(tr("Role"), weight=MEDIUM))
@@ -148,10 +150,6 @@ class OperatorsCard(SettingsCard):
             name = self.name.text.strip()
             self.added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self.rows.setSpacing(px(4))
-
 
 class _OperatorRow(QWidget):
     switched = Signal(object)  # OperatorLine
@@ -159,10 +157,8 @@ class _OperatorRow(QWidget):
     def __init__(self, operator: OperatorLine) -> None:
         super().__init__()
         self._operator = operator
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
         words = ", ".join([operator.code, operator.name, operator.role])
-        row.addWidget(Text(words, size=15, wraps=True), 1)
+        row = lay_out(QHBoxLayout(self), (Text(words, size=15, wraps=True), 1), margins=0)
         self.button = Button(
             tr("Remove user")
             if operator.is_active

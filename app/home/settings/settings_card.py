@@ -3,6 +3,7 @@
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 
 PADDING, SPACING = 20, 10
@@ -15,13 +16,8 @@ class SettingsCard(Card):
 
     def fill(self, *parts: QWidget) -> None:
         """Put parts below each other, as wide as the card."""
-        for part in parts:
-            self.column.addWidget(part)
+        lay_out(self.column, *parts)
 
     def add_left(self, *controls: QWidget) -> None:
         """Give controls the width that they need, one beside the other."""
-        row = QHBoxLayout()
-        for control in controls:
-            row.addWidget(control)
-        row.addStretch(1)
-        self.column.addLayout(row)
+        self.column.addLayout(lay_out(QHBoxLayout(), *controls, 1))

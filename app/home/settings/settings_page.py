@@ -11,11 +11,12 @@ from app.home.settings.clinic_cards import MoreStationsCard, StationCard
 from app.home.settings.operators_card import OperatorsCard
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import SCALES, current_theme
+from app.theme.current import SCALES, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -43,21 +44,14 @@ class DeletedLine:
 class SettingsPage(TallPage):
     """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
 
-    language_chosen = Signal(str)
-    scheme_chosen = Signal(str)
     scale_chosen = Signal(float)
     side_chosen = Signal(bool)  # from behind
     motion_chosen = Signal(bool)  # less
-    sound_chosen = Signal(bool)
-    prompts_chosen = Signal(bool)
     passphrase_requested = Signal(str, str)  # old, new
-    recovery_key_requested = Signal()
     print_requested = Signal(str)
     save_requested = Signal(str)
     backup_requested = Signal()
-    backup_folder_requested = Signal()
     stop_requested = Signal()
-    error_report_requested = Signal()
     clinic_named = Signal(str)
     restore_requested = Signal(object, bool)  # id, whether it is a patient's
 
@@ -66,14 +60,13 @@ class SettingsPage(TallPage):
         self._shortest = shortest
         self._own: tuple[str, ...] = ()
         self._title = Text(tr("Settings"), size=26, weight=SEMIBOLD)
-        self.column.addWidget(self._title)
+        lay_out(self.column, self._title, margins=(24, 16, 24, 20), spacing=16)
         self._build_screen()
         self._build_access()
         self._build_backup()
         self.station = StationCard()
         self.more_stations = MoreStationsCard()
-        for card in (self.station, self.more_stations):
-            self.column.addWidget(card)
+        lay_out(self.column, self.station, self.more_stations)
         self._build_deleted()
         self._build_clinic()
         self.operators = OperatorsCard(shortest, roles, self.clinic)
@@ -81,7 +74,8 @@ class SettingsPage(TallPage):
         self._build_trouble()
         self.column.addStretch(1)
         self._connect()
-        self._apply_theme()
+        scaled(self.setMaximumWidth, COLUMN + 48)
+        scaled(self.deleted_rows.setSpacing, 4)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -262,9 +256,7 @@ class SettingsPage(TallPage):
         self.backup_stated = Text(weight=MEDIUM, wraps=True)
         self.back_up = Button(tr("Back up now"))
         self.choose_folder = Button(tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
-        self.backup_card.fill(Text(hint, tone="ink2", wraps=True))
-        self.backup_card.fill(self.backup_folder)
-        self.backup_card.fill(self.backup_stated)
+        self.backup_card.fill(Text(hint, tone="ink2", wraps=True), self.backup_folder, self.backup_stated)
         self.backup_card.add_left(self.back_up, self.choose_folder)
         self.show_backup("", "")
 
@@ -304,21 +296,14 @@ class SettingsPage(TallPage):
         self._trouble_stated.show()
 
     def _connect(self) -> None:
-        self.language.chosen.connect(self.language_chosen)
-        self.scheme.chosen.connect(self.scheme_chosen)
         self.scale.activated.connect(self._on_scale_chosen)
         self.side.chosen.connect(self._on_side_chosen)
         self.motion.chosen.connect(self._on_motion_chosen)
-        self.sound.toggled.connect(self.sound_chosen)
-        self.prompts.toggled.connect(self.prompts_chosen)
         self.change.clicked.connect(self._on_change)
-        self.renew.clicked.connect(self.recovery_key_requested)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.back_up.clicked.connect(self._on_back_up)
-        self.choose_folder.clicked.connect(self.backup_folder_requested)
         self.clinic.committed.connect(self._on_clinic_named)
-        self.report_error.clicked.connect(self.error_report_requested)
         for field in self._fields:
             field.edited.connect(self._on_edited)
 
@@ -330,7 +315,6 @@ class SettingsPage(TallPage):
             tr("Backup folder: {folder}.").format(folder=folder) if folder else tr("No backup folder chosen yet.")
         )
         self.back_up.setText(tr("Stop") if is_running else tr("Back up now"))
-        self.back_up.updateGeometry()
         self._is_backing_up = is_running
         self.choose_folder.setEnabled(not is_running)
 
@@ -383,13 +367,6 @@ class SettingsPage(TallPage):
     def _known(self) -> tuple[str, ...]:
         return *self._own, self.clinic.text
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.setMaximumWidth(px(COLUMN + 48))
-        self.column.setContentsMargins(px(24), px(16), px(24), px(20))
-        self.column.setSpacing(px(16))
-        self.deleted_rows.setSpacing(px(4))
-
 
 class _DeletedRow(QWidget):
     restored = Signal(object, bool)
@@ -397,18 +374,13 @@ class _DeletedRow(QWidget):
     def __init__(self, line: DeletedLine) -> None:
         super().__init__()
         self._line = line
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(Text(line.words, size=15, wraps=True))
-        words.addWidget(Text(line.details, size=14, tone="ink2", wraps=True))
-        row.addLayout(words, 1)
+        of_line = Text(line.words, size=15, wraps=True), Text(line.details, size=14, tone="ink2", wraps=True)
+        words = lay_out(QVBoxLayout(), *of_line, spacing=0)
         self.button = Button(tr("Restore"), height=44)
         self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
         self.button.setAccessibleDescription(line.details)
         self.button.clicked.connect(self._on_clicked)
-        row.addWidget(self.button)
+        lay_out(QHBoxLayout(self), (words, 1), self.button, margins=0)
 
     def _on_clicked(self) -> None:
         self.restored.emit(self._line.id, self._line.is_patient)

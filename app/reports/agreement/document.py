@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from datetime import datetime
+from functools import partial
 from importlib.resources import files
 from typing import Any
 
@@ -12,7 +13,7 @@ from app.reports.agreement.printed import (
     KINDS,
     clock_words,
     dagger_words,
-    event_name,
+    events_words,
     figures_of_table_1,
     optical_words,
     other_angles_words,
@@ -34,7 +35,7 @@ from app.reports.blocks import (
     paragraph,
     table,
 )
-from app.reports.patient.document import CODE_LENGTH, PAGES, draw_pages, set_pages
+from app.reports.patient.document import CODE_LENGTH, PAGES, draw_pages, foot, set_pages
 from app.summary.numbers_in_words import fixed, signed
 from app.summary.plain_text import isolated, plain, shortened, typed
 from app.summary.report_dates import day
@@ -90,11 +91,7 @@ def _data(study: AgreementStudy, session: Session, pictures: Mapping[str, Pictur
             "code": code,
             "date": recorded,
         },
-        "foot": {
-            "use": tr("Research use. Not a medical device."),
-            "software": f"Gaitwright {plain(version)[:CODE_LENGTH]}",
-            "page": tr("Page {page} of {pages}"),
-        },
+        "foot": foot(version),
         "pages": _pages(study, session.patient, pictures),
     }
 
@@ -111,7 +108,9 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
             first += [heading(tr("Error by gait phase: RMSE in degrees, mean of each walk removed"), 2)]
             first += [_phases(study, patient)]
     if events_together(study) or len(lengths_together(study)):
-        first += [heading(tr("Events and strides"), 2), bullets(_of_events(study))]
+        decimals = partial(fixed, decimals=1), partial(signed, decimals=2), partial(fixed, decimals=2)
+        events = events_words(study, *decimals)
+        first += [heading(tr("Events and strides"), 2), bullets(list(events))]
     if not_reported := verdict_words(study):
         first += [bullets([typed(stated, SENTENCE_LENGTH) for stated in not_reported])]
     if study.with_angles:
@@ -218,30 +217,6 @@ def _phases(study: AgreementStudy, patient: Patient) -> Block:
         cells = [fixed(math.degrees(error.rms_rad), 2) for error in errors]
         rows.append([tr(KINDS[joint.kind]), role, *cells])
     return table(columns, rows, is_dense=True)
-
-
-def _of_events(study: AgreementStudy) -> list[str]:
-    stated = [
-        tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.").format(
-            event=event_name(kind),
-            found=found.found,
-            count=found.count,
-            more=found.more,
-            bias=fixed(1e3 * found.bias_s, 1),
-            sd=fixed(1e3 * found.sd_s, 1),
-        )
-        for kind, found in events_together(study).items()
-    ]
-    lengths = lengths_together(study)
-    if len(lengths) > 1:
-        error = lengths[:, 0] - lengths[:, 1]
-        bias = 100 * float(error.mean()) / float(lengths[:, 1].mean())
-        stated.append(
-            tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.").format(
-                count=len(lengths), bias=signed(bias, 2), sd=fixed(100 * float(error.std(ddof=1)), 2)
-            )
-        )
-    return stated
 
 
 def _what_is_not_shown() -> str:

@@ -15,13 +15,7 @@ REPORT = "agreement.pdf"
 def write_agreement(
     study: AgreementStudy, session: Session, folder: Path, made_at: datetime | None, version: str
 ) -> None:
-    """Write all files into `folder`, which is there; without a time of making there is no PDF.
-
-    Raises
-    ------
-    OSError
-        The files cannot be written.
-    """
+    """Write all files into the existing `folder`; without a time of making there is no PDF; raises OSError."""
     write_study(study, folder)
     shown = as_shown(study, session.recordings)
     pictures = pictures_of(shown, session.patient)

@@ -5,15 +5,16 @@ phases of the foot: black loading, dark foot flat, light pre-swing, empty swing.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from app.charts.drawing import COLOURS, MM, Picture, box, curve, line, picture, text
+from app.charts.drawing import COLOURS, MM, Drawing, Picture
 from app.reports.agreement.printed import side_role
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.theme.colours import PAPER
+from app.wording.numbers import MINUS
 from app.wording.translation import capitalised, later, tr
 from core.body import Joint, JointKind
 from core.gait.phases import PHASES, Phase
@@ -74,8 +75,7 @@ def _joints(walk: ComparedWalk, kind: JointKind) -> list[Joint]:
 def _figure(walk: ComparedWalk, patient: Patient, kind: JointKind, *, is_simulated: bool) -> Picture:
     joints = _joints(walk, kind)
     shown = _seconds(walk, joints)
-    parts: list[str] = []
-    top, alts = 0.0, []
+    draw, top, alts = Drawing(), 0.0, []
     for joint in joints:
         m_deg = math.degrees(walk.figures[joint, AngleKind.RESULT].m_rad)
         title = tr("{joint}, {side}: {m:.2f}° RMSE, mean removed").format(
@@ -83,11 +83,11 @@ def _figure(walk: ComparedWalk, patient: Patient, kind: JointKind, *, is_simulat
             side=side_role(joint.side, patient),
             m=m_deg,
         )
-        parts += [text(0, top + 8, (tr("SIMULATED. ") if is_simulated else "") + title, 7.6, weight=600)]
-        parts += _panel(walk, joint, shown, top + TITLE)
+        draw.text(0, top + 8, (tr("SIMULATED. ") if is_simulated else "") + title, 7.6, weight=600)
+        _draw_panel(draw, walk, joint, shown, top + TITLE)
         top += TITLE + STRIP + PLOT + GAP + ERROR + FOOT
         alts.append(title)
-    return picture(parts, WIDTH, top, ". ".join([*alts, walk.recording.name]) + ".")
+    return draw.picture(WIDTH, top, ". ".join([*alts, walk.recording.name]) + ".")
 
 
 def _seconds(walk: ComparedWalk, joints: Sequence[Joint]) -> BoolArray:
@@ -101,7 +101,7 @@ def _seconds(walk: ComparedWalk, joints: Sequence[Joint]) -> BoolArray:
     )
 
 
-def _panel(walk: ComparedWalk, joint: Joint, shown: BoolArray, top: float) -> Iterator[str]:
+def _draw_panel(draw: Drawing, walk: ComparedWalk, joint: Joint, shown: BoolArray, top: float) -> None:
     time_s = walk.recording.time_s[shown]
     ours = np.rad2deg(walk.recording.measured[joint].angle_rad[shown])
     reference = np.rad2deg(walk.reference_rad[joint][shown])
@@ -111,33 +111,33 @@ def _panel(walk: ComparedWalk, joint: Joint, shown: BoolArray, top: float) -> It
         return LEFT + (WIDTH - LEFT - RIGHT) * (np.asarray(at_s) - start_s) / (last_s - start_s)
 
     if joint.side in walk.recording.gait:
-        yield from _strip(time_s, walk.recording.gait[joint.side].phase[shown], x, top)
-    yield from _axis(top + STRIP, PLOT, _limits([ours, reference], STEP_DEG), STEP_DEG)
+        _draw_strip(draw, time_s, walk.recording.gait[joint.side].phase[shown], x, top)
+    _draw_axis(draw, top + STRIP, PLOT, _limits([ours, reference], STEP_DEG), STEP_DEG)
     y = _scale(top + STRIP, PLOT, _limits([ours, reference], STEP_DEG))
     if joint in walk.recording.joints:  # a hip has none
         published = np.rad2deg(walk.recording.joints[joint].published_rad[shown])
-        yield curve(x(time_s), y(published), PAPER.note, PUBLISHED, PUBLISHED_DASH)
-    yield curve(x(time_s), y(ours), COLOURS[joint.side], OURS)
-    yield curve(x(time_s), y(reference), PAPER.ink, REFERENCE, REFERENCE_DASH)
+        draw.curve(x(time_s), y(published), PAPER.note, PUBLISHED, PUBLISHED_DASH)
+    draw.curve(x(time_s), y(ours), COLOURS[joint.side], OURS)
+    draw.curve(x(time_s), y(reference), PAPER.ink, REFERENCE, REFERENCE_DASH)
     error = ours - reference - np.nanmean(ours - reference)
     under = top + STRIP + PLOT + GAP
     low, high = _limits([error, np.array([-LEAST_ERROR_DEG, LEAST_ERROR_DEG])], ERROR_STEP_DEG)
-    yield from _axis(under, ERROR, (low, high), max(ERROR_STEP_DEG, high - low))
-    yield curve(x(time_s), _scale(under, ERROR, (low, high))(error), COLOURS[joint.side], OURS)
+    _draw_axis(draw, under, ERROR, (low, high), max(ERROR_STEP_DEG, high - low))
+    draw.curve(x(time_s), _scale(under, ERROR, (low, high))(error), COLOURS[joint.side], OURS)
     for at_s in np.arange(math.ceil(start_s), last_s + 1e-9):
-        yield text(float(x(at_s)), under + ERROR + 9, f"{at_s:.0f}", 6.6, anchor="middle")
-    yield text(WIDTH - RIGHT, under + ERROR + 9, tr("s"), 6.6)
+        draw.text(float(x(at_s)), under + ERROR + 9, f"{at_s:.0f}", 6.6, anchor="middle")
+    draw.text(WIDTH - RIGHT, under + ERROR + 9, tr("s"), 6.6)
 
 
-def _strip(time_s: FloatArray, phase: IntArray, x: Scale, top: float) -> Iterator[str]:
+def _draw_strip(draw: Drawing, time_s: FloatArray, phase: IntArray, x: Scale, top: float) -> None:
     edges = np.concatenate([[0], np.nonzero(np.diff(phase))[0] + 1, [len(phase) - 1]])
     for first, last in pairwise(edges.tolist()):
         kind = PHASES[int(phase[first])]
         left, right = float(x(time_s[first])), float(x(time_s[last]))
         if kind in FILLS:
-            yield box(left, top, right - left, STRIP - 1.5, FILLS[kind], PAPER.ink, 0.3)
+            draw.box(left, top, right - left, STRIP - 1.5, FILLS[kind], PAPER.ink, 0.3)
         if first:
-            yield line(left, top, left, top + STRIP + PLOT + GAP + ERROR, PAPER.grid, 0.4)
+            draw.line(left, top, left, top + STRIP + PLOT + GAP + ERROR, PAPER.grid, 0.4)
 
 
 def _limits(curves: Sequence[FloatArray], step: float) -> tuple[float, float]:
@@ -151,11 +151,11 @@ def _scale(top: float, height: float, limits: tuple[float, float]) -> Scale:
     return lambda angle_deg: np.asarray(top + height * (high - np.asarray(angle_deg)) / (high - low))
 
 
-def _axis(top: float, height: float, limits: tuple[float, float], step: float) -> Iterator[str]:
+def _draw_axis(draw: Drawing, top: float, height: float, limits: tuple[float, float], step: float) -> None:
     y = _scale(top, height, limits)
     for value in np.arange(limits[0], limits[1] + step / 2, step):
-        yield line(LEFT, float(y(value)), WIDTH - RIGHT, float(y(value)), PAPER.grid, 0.4)
-        yield text(LEFT - 4, float(y(value)) + 2.4, f"{value:.0f}°".replace("-", "\u2212"), 6.6, anchor="end")
+        draw.line(LEFT, float(y(value)), WIDTH - RIGHT, float(y(value)), PAPER.grid, 0.4)
+        draw.text(LEFT - 4, float(y(value)) + 2.4, f"{value:.0f}°".replace("-", MINUS), 6.6, anchor="end")
 
 
 def caption(study: AgreementStudy, kind: JointKind) -> str:

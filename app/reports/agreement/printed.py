@@ -87,7 +87,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
         yield from (f"  {stated}" for stated in used_words(study))
         for number, walk in enumerate(walks, 1):
             yield f"  {number}: {clock_words(walk)}"
-    yield from _events(study)
+    yield from events_words(study, _short, "{:+.2f}".format, _short)
     for one in study.left_over:
         yield f"- {tr('{name}: no matching counterpart, so it was not compared.').format(name=one_line(one))}"
     yield from (f"- {stated}" for stated in verdict_words(study))
@@ -205,10 +205,14 @@ def _more(joint: Joint, role: str, found: Agreement) -> str:
     )
 
 
-def _events(study: AgreementStudy) -> Iterator[str]:
+Write = Callable[[float], str]
+
+
+def events_words(study: AgreementStudy, of_time: Write, of_bias: Write, of_spread: Write) -> Iterator[str]:
+    """How events and lengths agree; milliseconds are written by `of_time`, bias and SD of a length by the others."""
     for kind, found in events_together(study).items():
         stated = tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.")
-        bias, sd = _short(1e3 * found.bias_s), _short(1e3 * found.sd_s)
+        bias, sd = of_time(1e3 * found.bias_s), of_time(1e3 * found.sd_s)
         yield stated.format(
             event=event_name(kind), found=found.found, count=found.count, more=found.more, bias=bias, sd=sd
         )
@@ -217,8 +221,8 @@ def _events(study: AgreementStudy) -> Iterator[str]:
         error = lengths[:, 0] - lengths[:, 1]
         percent = 100 * float(error.mean()) / float(lengths[:, 1].mean())
         stated = tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.")
-        spread = f"{100 * float(error.std(ddof=1)):.2f}"
-        yield stated.format(count=len(lengths), bias=f"{percent:+.2f}", sd=spread)
+        spread = of_spread(100 * float(error.std(ddof=1)))
+        yield stated.format(count=len(lengths), bias=of_bias(percent), sd=spread)
 
 
 def _of(walk: ComparedWalk, joint: Joint, of_walk: Callable[[Agreement], float]) -> float:

@@ -125,13 +125,7 @@ class AgreementStudy:
 
 
 def as_shown(study: AgreementStudy, recordings: Sequence[Recording]) -> AgreementStudy:
-    """The study with its walks called as on screen and paper; tables for programs keep their own names.
-
-    Parameters
-    ----------
-    recordings
-        Those of the session, in order of time.
-    """
+    """Rename the study's walks as on screen and paper; `recordings` are in time order."""
     names = {name: str(shown) for name, shown in shown_names(recordings).items()}
     walks = tuple(
         replace(walk, recording=replace(walk.recording, name=names.get(walk.recording.name, walk.recording.name)))
@@ -141,13 +135,7 @@ def as_shown(study: AgreementStudy, recordings: Sequence[Recording]) -> Agreemen
 
 
 def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> AgreementStudy:
-    """Compare the walks of a session (without one, its other recordings) with references of these names.
-
-    Raises
-    ------
-    FileRefusedError
-        None of the trials fits any walk.
-    """
+    """Compare walks (else other recordings) with named references; raises FileRefusedError if none fits."""
     trials = [NamedTrial(name, file.source, trial) for name, file in files for trial in file.trials]
     walks = [one for one in analysis.recordings if one.kind is RecordingKind.WALKING] or list(analysis.recordings)
     if not walks:

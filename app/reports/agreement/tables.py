@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk, UsedSamples
-from app.system.tables import typed_cell, write_table
+from app.system.tables import figure_cell, typed_cell, write_table
 from core.agreement.events import EventAgreement, joined
 from core.agreement.figures import NAMED_PHASES, STANCE, Agreement
 from core.body import Joint
@@ -25,7 +25,6 @@ SUMMARY, TABLE, EVENT_TABLE, LENGTHS, CURVES, MEANINGS = (
     "columns.csv",
 )
 OVER_WALKS = "over walks"
-DECIMALS = 5
 DEGREES = {  # columns of agreement.csv and the figure behind each
     "z_rmse_deg": "z_rad",
     "m_rmse_deg": "m_rad",
@@ -108,13 +107,7 @@ OF_TABLES = {  # the other tables; of curves.csv as the left knee has them
 
 
 def write_study(study: AgreementStudy, folder: Path) -> None:
-    """Write every table of an agreement into `folder`, which is there.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write every table of an agreement into the existing `folder`; raises OSError."""
     write_table(*agreement_table(study), folder / TABLE)
     if any(walk.events for walk in study.walks):
         write_table(*event_table(study), folder / EVENT_TABLE)
@@ -164,13 +157,17 @@ def _figures(found: Agreement, z_sd_rad: float = math.nan, m_sd_rad: float = mat
     cells = [str(found.samples)]
     between = {"z_rmse_deg": z_sd_rad, "m_rmse_deg": m_sd_rad}
     for name, figure in DEGREES.items():
-        cells.append(_cell(math.degrees(getattr(found, figure))))
+        cells.append(figure_cell(math.degrees(getattr(found, figure))))
         if name in between:
-            cells.append(_cell(math.degrees(between[name])))
-    cells += [str(found.ranges), _cell(found.correlation), *(_cell(getattr(found, name)) for name in SHARES.values())]
+            cells.append(figure_cell(math.degrees(between[name])))
+    cells += [
+        str(found.ranges),
+        figure_cell(found.correlation),
+        *(figure_cell(getattr(found, name)) for name in SHARES.values()),
+    ]
     for phases in (*((phase,) for phase in NAMED_PHASES), STANCE):
         error = found.in_phases(phases)
-        cells += [_cell(math.degrees(error.rms_rad)), _cell(math.degrees(error.bias_rad))]
+        cells += [figure_cell(math.degrees(error.rms_rad)), figure_cell(math.degrees(error.bias_rad))]
     return cells
 
 
@@ -186,7 +183,7 @@ def _clock(walk: ComparedWalk, joint: Joint) -> list[str]:
         found.likeness.get(joint, math.nan),
         found.gain.get(joint, math.nan),
     )
-    return [str(found.sign.get(joint, "")), *map(_cell, numbers)]
+    return [str(found.sign.get(joint, "")), *map(figure_cell, numbers)]
 
 
 def _used_cells(walks: Sequence[UsedSamples]) -> list[str]:
@@ -211,7 +208,7 @@ def curve_table(walk: ComparedWalk) -> tuple[list[str], Iterator[list[str]]]:
     def rows() -> Iterator[list[str]]:
         table = np.column_stack(columns)
         for k, row in enumerate(table.tolist()):
-            yield [*map(_cell, row), *(str(PHASES[phase[k]]) for phase in phases.values())]
+            yield [*map(figure_cell, row), *(str(PHASES[phase[k]]) for phase in phases.values())]
 
     return header, rows()
 
@@ -239,13 +236,19 @@ def events_together(study: AgreementStudy) -> dict[str, EventAgreement]:
 
 
 def _event_cells(found: EventAgreement) -> list[str]:
-    return [str(found.count), str(found.found), str(found.more), _cell(1e3 * found.bias_s), _cell(1e3 * found.sd_s)]
+    return [
+        str(found.count),
+        str(found.found),
+        str(found.more),
+        figure_cell(1e3 * found.bias_s),
+        figure_cell(1e3 * found.sd_s),
+    ]
 
 
 def length_table(study: AgreementStudy) -> tuple[list[str], list[list[str]]]:
     """Every stride used with its length by both systems."""
     rows = [
-        [typed_cell(walk.recording.name), str(side), _cell(ours), _cell(theirs), _cell(ours - theirs)]
+        [typed_cell(walk.recording.name), str(side), figure_cell(ours), figure_cell(theirs), figure_cell(ours - theirs)]
         for walk in study.walks
         for side, pairs in walk.lengths_m.items()
         for ours, theirs in pairs.tolist()
@@ -312,7 +315,3 @@ def _meanings() -> Iterator[tuple[str, str, str]]:
 
 def _phase_words(phase: Phase | str | None) -> str:
     return str(phase or "").replace("_", " ")
-
-
-def _cell(value: float) -> str:
-    return f"{value:.{DECIMALS}f}" if math.isfinite(value) else ""

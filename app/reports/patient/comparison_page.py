@@ -47,10 +47,8 @@ WITH_HIP_WIDTH = 44 * MM  # of three beside each other
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
-    """What the report compares: with an earlier visit, else the conditions chosen; None where neither is.
-
-    A walk represents all walks of its condition, as on the screen, unless another of them was chosen beside it. Of an
-    earlier visit the same condition counts, as it was walked last; where it has no such, nothing is compared.
+    """Give what the report compares: an earlier visit, else the chosen conditions, else None.
+    A walk represents its condition unless another of its walks was chosen; of a visit the last walk counts.
     """
     visit, is_simulated = request.visit, request.visit.analysis.is_simulated
     if request.earlier is not None:
@@ -212,17 +210,9 @@ def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
 
 def _alt(part: Part, side: Side, kind: str) -> str:
     """One line of a panel in words and numbers."""
-    numbers = [tr("{count} strides").format(count=part.strides(side))]
-    for column in panels.PEAK_COLUMNS[kind]:
-        value = part.value(side, column)
-        if is_mean_enough(value.n):
-            numbers.append(f"{panels.peak_name(column)} {fixed(value.mean, 0)}°")
-    found, off = part.value(side, f"{kind}_range_deg"), part.value(side, "stance_percent")
-    if is_mean_enough(found.n):
-        numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
-    if is_mean_enough(off.n):
-        numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
-    return f"{part.letter}: {', '.join(numbers)}."
+    values = {column: part.value(side, column) for column in panels.PEAK_COLUMNS[kind]}
+    peaks = [f"{panels.peak_name(of)} {fixed(one.mean, 0)}°" for of, one in values.items() if is_mean_enough(one.n)]
+    return f"{part.letter}: {panels.leg_in_numbers(part, side, kind, peaks)}."
 
 
 def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> Band | None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.charts.cycles import PERCENT
-from app.charts.drawing import MM, Picture, curve, line, picture, text
+from app.charts.drawing import MM, Drawing, Picture
 from app.summary.panels import excursion_name
 from app.summary.reference_bands import reference_curves
 from app.theme.colours import PAPER
@@ -55,19 +55,20 @@ def definitions(kind: str) -> Picture:
 
     across = np.array([x(float(percent)) for percent in PERCENT])
     up = np.array([y(float(value)) for value in angle_deg])
-    parts = [text(0, 8, tr("Knee") if kind == "knee" else tr("Ankle"), 7.6, weight=600)]
-    parts.append(line(x(TOE_OFF_PERCENT), TOP - 4, x(TOE_OFF_PERCENT), HEIGHT - FOOT + 4, PAPER.note, 0.5, "2 2"))
-    parts.append(text(x(TOE_OFF_PERCENT), HEIGHT - 2, tr("toe\u2011off"), 6.6, anchor="middle", fill=PAPER.note))
-    parts.append(curve(across, up, PAPER.note, 1.8))
+    draw = Drawing()
+    draw.text(0, 8, tr("Knee") if kind == "knee" else tr("Ankle"), 7.6, weight=600)
+    draw.line(x(TOE_OFF_PERCENT), TOP - 4, x(TOE_OFF_PERCENT), HEIGHT - FOOT + 4, PAPER.note, 0.5, "2 2")
+    draw.text(x(TOE_OFF_PERCENT), HEIGHT - 2, tr("toe\u2011off"), 6.6, anchor="middle", fill=PAPER.note)
+    draw.curve(across, up, PAPER.note, 1.8)
     names = []
     for column, place in PLACES.items():
         if column.startswith(kind):
             name = _label(column)
             names.append(name)
             ends = [(x(percent), y(value)) for percent, value in _ends(column, angle_deg)]
-            parts += _bracket(x(place.percent), ends, name, place)
+            _draw_bracket(draw, x(place.percent), ends, name, place)
     alt = tr("Schematic curve over 100 % of the gait cycle with brackets: {names}.").format(names=", ".join(names))
-    return picture(parts, WIDTH, HEIGHT, alt)
+    return draw.picture(WIDTH, HEIGHT, alt)
 
 
 def _label(column: str) -> str:
@@ -95,10 +96,12 @@ def _ends(column: str, angle_deg: FloatArray) -> list[tuple[float, float]]:
     return found
 
 
-def _bracket(at: float, ends: list[tuple[float, float]], name: str, place: _Place) -> list[str]:
-    parts = [line(px, py, at, py, PAPER.ink, 0.5, "0.8 1.6") for px, py in ends]
+def _draw_bracket(draw: Drawing, at: float, ends: list[tuple[float, float]], name: str, place: _Place) -> None:
+    for px, py in ends:
+        draw.line(px, py, at, py, PAPER.ink, 0.5, "0.8 1.6")
     top, bottom = sorted(py for _, py in ends)
-    parts.append(line(at, top, at, bottom, PAPER.ink, 1.2))
-    parts += [line(at - CAP, end, at + CAP, end, PAPER.ink, 1.2) for end in (top, bottom)]
+    draw.line(at, top, at, bottom, PAPER.ink, 1.2)
+    for end in (top, bottom):
+        draw.line(at - CAP, end, at + CAP, end, PAPER.ink, 1.2)
     beside = {"start": 5.0, "end": -5.0, "middle": 0.0}[place.anchor]
-    return [*parts, text(at + beside, (top + bottom) / 2 + 2.4 - place.up, name, 6.8, anchor=place.anchor)]
+    draw.text(at + beside, (top + bottom) / 2 + 2.4 - place.up, name, 6.8, anchor=place.anchor)

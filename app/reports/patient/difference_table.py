@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from app.charts.cycles import is_mean_enough
-from app.charts.drawing import MM, Picture, box, line, picture
+from app.charts.drawing import MM, Drawing, Picture
 from app.charts.joint_on_paper import CHIP, chip_picture
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
@@ -12,22 +12,22 @@ from app.summary.headline import Headline
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import CARE, DAGGER, NOTHING, dagger_note, fixed, marked, signed
 from app.summary.trend_lines import walked_visits
-from app.summary.what_differs import LegsRow, since_last, what_differs, without_family
+from app.summary.what_differs import LegsRow, half_of_strip, since_last, what_differs, without_family
 from app.summary.what_stands_out import FAMILIES
 from app.theme.colours import LIGHT, PAPER
 from app.wording.body import side_name
 from app.wording.dates import day_in_words
 from app.wording.measures import with_unit
+from app.wording.numbers import MINUS
 from app.wording.translation import tr
 from core.body import Side
 from core.parameters import KNEE, Unit, unit_of
-from core.verdicts.measurement_error import Difference, Mark
+from core.verdicts.measurement_error import Mark
 from core.verdicts.model import Verdict
 
 MOST_ROWS = 5
 HIP = "hip_range_deg"
 MARK, STRIP, STRIP_HEIGHT = 7.0, 20 * MM, 12.0
-ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's difference, else half of the interval
 MARGIN = 2.4  # so that what reaches an edge is seen whole
 
 
@@ -40,7 +40,7 @@ def difference_table(facts: Facts, headline: Headline) -> dict[str, object] | No
     walked = walked_visits(facts.course, facts.condition)
     days = [visit.day for visit in walked]
     has_last, first = len(walked) > 1, facts.first_and_second[0]
-    less = f"{first.letter} \N{MINUS SIGN} {first.other.letter}"
+    less = f"{first.letter} {MINUS} {first.other.letter}"
     since = tr("Since {day}").format(day=day_in_words(days[-2], days)) if has_last else ""
     return {
         "title": tr("Largest differences") if len(sides) > 1 else tr("Values"),
@@ -128,27 +128,27 @@ def _marks(rows: Sequence[LegsRow], sides: Sequence[Side], headline: Headline) -
 def mark_picture(mark: Mark) -> Picture:
     fill = PAPER.ink if mark is Mark.HEALTHY else PAPER.paper
     words = tr("beyond 95 of 100") if mark is Mark.HEALTHY else tr("beyond error")
-    dot = f'<circle cx="{MARK / 2}" cy="{MARK / 2}" r="2.6" fill="{fill}" stroke="{PAPER.ink}" stroke-width="1.1"/>'
-    return picture([dot], MARK, MARK, words)
+    draw = Drawing()
+    draw.circle(MARK / 2, MARK / 2, 2.6, fill, PAPER.ink, 1.1)
+    return draw.picture(MARK, MARK, words)
 
 
 def strip(row: LegsRow) -> Picture:
     """A difference with its likely interval over what 95 of 100 healthy people differ by."""
-    found: Difference = row.difference
-    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
-    reach = max(usual, abs(found.difference) + found.error)
+    found, reach = row.difference, half_of_strip(row.difference)
     y, half = STRIP_HEIGHT / 2, STRIP / 2
 
     def x(value: float) -> float:
         return half + (half - MARGIN) * min(max(value / reach, -1.0), 1.0)
 
-    parts = []
+    draw = Drawing()
     if math.isfinite(found.healthy):
         left, right = x(-found.healthy), x(found.healthy)
-        parts.append(box(left, 1, right - left, STRIP_HEIGHT - 2, LIGHT.band_2sd))
-    parts.append(line(half, 0.5, half, STRIP_HEIGHT - 0.5, PAPER.note, 0.5))
+        draw.box(left, 1, right - left, STRIP_HEIGHT - 2, LIGHT.band_2sd)
+    draw.line(half, 0.5, half, STRIP_HEIGHT - 0.5, PAPER.note, 0.5)
     low, high = (x(edge) for edge in found.interval)
-    parts.append(line(low, y, high, y, PAPER.ink, 0.9))
-    parts += [line(end, y - 2.2, end, y + 2.2, PAPER.ink, 0.9) for end in (low, high)]
-    parts.append(line(x(found.difference), y - 4, x(found.difference), y + 4, PAPER.ink, 2.0))  # dots are the marks
-    return picture(parts, STRIP, STRIP_HEIGHT)
+    draw.line(low, y, high, y, PAPER.ink, 0.9)
+    for end in (low, high):
+        draw.line(end, y - 2.2, end, y + 2.2, PAPER.ink, 0.9)
+    draw.line(x(found.difference), y - 4, x(found.difference), y + 4, PAPER.ink, 2.0)  # dots are the marks
+    return draw.picture(STRIP, STRIP_HEIGHT)

@@ -31,13 +31,7 @@ TITLE_CODE_LENGTH = 24
 
 
 def make_report(request: ReportRequest) -> bytes:
-    """Make the report's PDF. The same request gives the same bytes.
-
-    Raises
-    ------
-    KeyError
-        A walk is not among those analysed.
-    """
+    """Make the report's PDF, the same bytes for the same request; raises KeyError for an unanalysed walk."""
     return set_pages(PAGES.read_bytes() + TEMPLATE.read_bytes(), report_data(request), request.made_at)
 
 
@@ -160,14 +154,19 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
             "code": isolated(shortened(code, CODE_LENGTH)) or tr("no patient code"),
             "date": recorded if session.started else "",
         },
-        "foot": {
-            "use": tr("Research use. Not a medical device."),
-            "software": f"Gaitwright {plain(request.software_version)[:CODE_LENGTH]}",
-            "page": tr("Page {page} of {pages}"),
-        },
+        "foot": foot(request.software_version),
         "first_page": first_page(request, facts, comparison),
         "pages": pages,
         "pages_of_walk": len(of_walk),
+    }
+
+
+def foot(version: str) -> dict[str, str]:
+    """What every page ends with."""
+    return {
+        "use": tr("Research use. Not a medical device."),
+        "software": f"Gaitwright {plain(version)[:CODE_LENGTH]}",
+        "page": tr("Page {page} of {pages}"),
     }
 
 

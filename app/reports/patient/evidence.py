@@ -1,8 +1,9 @@
 """What each joint's verdict rests on, beside what it needs; and how large a difference has to be."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -22,13 +23,14 @@ from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
 from core.verdicts.measurement_error import SENTENCE_FACTORS
-from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
+from core.verdicts.model import NOT_MEASURED, GateReason
 from core.verdicts.quantities import assessment_of, raw_values
 from core.verdicts.sigmas import ComparisonKind
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
 MARGIN_BEYOND = 100.0  # from here on, how many times better adds nothing
-Criterion = tuple[str, str, Callable[[Joint, JointCalibration], str], str]
+T = TypeVar("T")
+Criterion = tuple[str, str, Callable[[Joint, T], str], str]
 """A gate, its name, what a joint has, what is required."""
 
 
@@ -55,7 +57,7 @@ def evidence_table(facts: Facts) -> list[Block]:
     ]
     care, most = LIMITS.axis_sd_deg
     knee, ankle = LIMITS.knee_range_deg, LIMITS.ankle_range_deg
-    gates: list[Criterion] = [
+    gates: list[Criterion[JointCalibration]] = [
         (
             "axis",
             tr("Joint axis, ± 1 SD"),
@@ -92,7 +94,7 @@ def evidence_table(facts: Facts) -> list[Block]:
         (
             "plausible",
             tr("ROM in walking, median"),
-            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            lambda joint, _: _median(facts, joint),
             tr("knee {knee}°, ankle {ankle}°").format(
                 knee=f"{knee[0]:.0f}–{knee[1]:.0f}", ankle=f"{ankle[0]:.0f}–{ankle[1]:.0f}"
             ),
@@ -100,29 +102,19 @@ def evidence_table(facts: Facts) -> list[Block]:
         (
             "halves",
             tr("ROM, second half of walk minus first"),
-            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
+            lambda joint, _: _farthest(2, facts, joint),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
         (
             "drift",
             tr("ROM, last third minus first"),
-            lambda joint, _: _degrees(_farthest(thirds_apart, facts, joint), is_signed=True),
+            lambda joint, _: _farthest(3, facts, joint),
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
         ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("not moved")),
         ("zero", tr("Standing reference"), lambda _, found: _zero(found), tr("posture, or goniometer")),
     ]
-    rows: list[Row] = [
-        [
-            label,
-            *(
-                Cell(stated(joint, facts.calibrated[joint]), is_bold=_has_failed(facts.verdicts.joint(joint), gate))
-                for joint in joints
-            ),
-            limit,
-        ]
-        for gate, label, stated, limit in gates
-    ]
+    rows = _rows(facts, gates, {joint: facts.calibrated[joint] for joint in joints})
     return [heading(tr("Basis of each rating")), table(columns, rows, is_dense=True)]
 
 
@@ -137,7 +129,7 @@ def hips_table(facts: Facts) -> list[Block]:
         Column(tr("Required for “{word}”").format(word=tr("good")), "58mm", is_number=False),
     ]
     centre, apart, of_range = LIMITS.hip_centre_m, LIMITS.hips_apart_m, LIMITS.hip_range_deg
-    gates: list[tuple[str, str, Callable[[Joint, HipIdentification], str], str]] = [
+    gates: list[Criterion[HipIdentification]] = [
         (
             "pairing",
             tr("Adjacent segments, clarity"),
@@ -173,27 +165,17 @@ def hips_table(facts: Facts) -> list[Block]:
         (
             "plausible",
             tr("ROM in walking, median"),
-            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            lambda joint, _: _median(facts, joint),
             f"{of_range[0]:.0f}–{of_range[1]:.0f}°",
         ),
         (
             "halves",
             tr("ROM, second half of walk minus first"),
-            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
+            lambda joint, _: _farthest(2, facts, joint),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
     ]
-    rows: list[Row] = [
-        [
-            label,
-            *(
-                Cell(stated(joint, hip.identification), is_bold=_has_failed_hip(facts, joint, gate))
-                for joint, hip in hips.items()
-            ),
-            limit,
-        ]
-        for gate, label, stated, limit in gates
-    ]
+    rows = _rows(facts, gates, {joint: hip.identification for joint, hip in hips.items()})
     stated = facts.verdicts
     verdicts = [
         (tr("ROM, shape"), [stated.joint(joint).shape for joint in hips]),
@@ -271,20 +253,12 @@ def error_table() -> list[Block]:
     ]
 
 
-def halves_apart(values: FloatArray) -> float:
-    """The mean of the second half of some values (k,) less that of the first; NaN of too few."""
+def _parts_apart(values: FloatArray, parts: int) -> float:
+    """The mean of the last of so many parts of some values (k,) less that of the first; NaN of too few."""
     if len(values) < MIN_STRIDES_TO_SPLIT:
         return math.nan
-    half = len(values) // 2
-    return float(values[-half:].mean() - values[:half].mean())
-
-
-def thirds_apart(values: FloatArray) -> float:
-    """The mean of the last third of some values (k,) less that of the first; NaN of too few."""
-    if len(values) < MIN_STRIDES_TO_SPLIT:
-        return math.nan
-    third = len(values) // 3
-    return float(values[-third:].mean() - values[:third].mean())
+    each = len(values) // parts
+    return float(values[-each:].mean() - values[:each].mean())
 
 
 def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
@@ -294,14 +268,15 @@ def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
     return [one[np.isfinite(one)] for one in found]
 
 
-def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
-    return np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+def _median(facts: Facts, joint: Joint) -> str:
+    found = np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+    return _degrees(float(np.median(found)) if len(found) else math.nan)
 
 
-def _farthest(apart: Callable[[FloatArray], float], facts: Facts, joint: Joint) -> float:
-    """Of the walk in which the parts lie farthest apart: each walk has to pass by itself."""
-    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := apart(one))]
-    return max(found, key=abs, default=math.nan)
+def _farthest(parts: int, facts: Facts, joint: Joint) -> str:
+    """Of the walk in which the first and the last part lie farthest apart: each walk has to pass by itself."""
+    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := _parts_apart(one, parts))]
+    return _degrees(max(found, key=abs, default=math.nan), is_signed=True)
 
 
 def _degrees(value: float, *, is_signed: bool = False) -> str:
@@ -313,14 +288,14 @@ def _axis(_: Joint, found: JointCalibration) -> str:
     return _degrees(math.nan if found.axis_sd_rad is None else math.degrees(found.axis_sd_rad))
 
 
-def _axis_of_parts(facts: Facts) -> list[Criterion]:
+def _axis_of_parts(facts: Facts) -> list[Criterion[JointCalibration]]:
     """How far the axes of two parts of the data are apart, a criterion for each way they were parted."""
     found = facts.walk.axis_halves
     ways = (
         ("axis_halves", tr("Joint axis, halves of the walk"), False, LIMITS.axis_halves_deg),
         ("axis_motions", tr("Joint axis, free motion and walk"), True, LIMITS.axis_motions_deg),
     )
-    criteria: list[Criterion] = []
+    criteria: list[Criterion[JointCalibration]] = []
     for gate, label, is_free_motion, (care, most) in ways:
         apart = {joint: one.apart_rad for joint, one in found.items() if one.is_free_motion is is_free_motion}
         if apart:
@@ -347,12 +322,6 @@ def _cm(centre_m: FloatArray) -> str:
     return f"{fixed(100 * float(np.linalg.norm(centre_m)), 0)} cm"
 
 
-def _has_failed_hip(facts: Facts, joint: Joint, gate: str) -> bool:
-    heading = facts.verdicts.abduction.get(joint.side, NOT_MEASURED)
-    is_heading = gate == "hip_heading" and not heading.is_reported
-    return is_heading or _has_failed(facts.verdicts.joint(joint), gate)
-
-
 def _sign(_: Joint, found: JointCalibration) -> str:
     return NOTHING if found.clinical_sign_margin is None else fixed(found.clinical_sign_margin, 2)
 
@@ -375,6 +344,18 @@ def _zero(found: JointCalibration) -> str:
     return names[found.zero]
 
 
-def _has_failed(verdicts: JointVerdicts, gate: str) -> bool:
-    reasons: tuple[GateReason, ...] = (*verdicts.shape.reasons, *verdicts.height.reasons, *verdicts.sign.reasons)
-    return any(reason.gate == gate for reason in reasons)
+def _has_failed(facts: Facts, joint: Joint, gate: str) -> bool:
+    """Also a hip's heading, which takes its abduction alone away."""
+    is_heading = gate == "hip_heading" and not facts.verdicts.abduction.get(joint.side, NOT_MEASURED).is_reported
+    found = facts.verdicts.joint(joint)
+    reasons: tuple[GateReason, ...] = (*found.shape.reasons, *found.height.reasons, *found.sign.reasons)
+    return is_heading or any(reason.gate == gate for reason in reasons)
+
+
+def _rows(facts: Facts, gates: Sequence[Criterion[T]], found: Mapping[Joint, T]) -> list[Row]:
+    """A row for each criterion; what fails it is bold."""
+    rows: list[Row] = []
+    for gate, label, stated, limit in gates:
+        cells = [Cell(stated(joint, one), is_bold=_has_failed(facts, joint, gate)) for joint, one in found.items()]
+        rows.append([label, *cells, limit])
+    return rows

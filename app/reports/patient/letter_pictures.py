@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from app.charts.drawing import COLOURS, MM, Picture, line, picture, text
+from app.charts.drawing import COLOURS, MM, Drawing, Picture
 from app.theme.colours import PAPER
 from core.body import Side
 
@@ -29,45 +29,46 @@ class LetterValue:
 
 def leg_picture(side: Side, now: LetterValue, before: LetterValue | None, alt: str) -> Picture:
     """The knee bent by `now` degrees, over the one of an earlier visit, which is dotted."""
-    parts = [line(13 * MM, FLOOR, 149 * MM, FLOOR, PAPER.note, 1.2)]
+    draw = Drawing()
+    draw.line(13 * MM, FLOOR, 149 * MM, FLOOR, PAPER.note, 1.2)
     knee = _from(HIP, THIGH, LEAN_DEG)
     if before is not None:
-        parts += _shank(knee, before.value, PAPER.earlier, PAPER.note, "2.5 2")
+        _draw_shank(draw, knee, before.value, PAPER.earlier, PAPER.note, "2.5 2")
     dash = "4.6 2.2" if side is Side.RIGHT else ""
-    parts += [_segment(HIP, knee, HALF["thigh"], FILLED[side], COLOURS[side], dash)]
-    parts += _shank(knee, now.value, FILLED[side], COLOURS[side], dash)
+    _draw_segment(draw, HIP, knee, HALF["thigh"], FILLED[side], COLOURS[side], dash)
+    _draw_shank(draw, knee, now.value, FILLED[side], COLOURS[side], dash)
     end = _from(knee, 34 * MM, LEAN_DEG)
-    parts.append(line(*knee, *end, PAPER.ink, 1.2, "4 3"))
-    parts.append(_arc(knee, 20 * MM, now.value, 2.2, PAPER.ink))
+    draw.line(*knee, *end, PAPER.ink, 1.2, "4 3")
+    _draw_arc(draw, knee, 20 * MM, now.value, 2.2, PAPER.ink)
     if before is not None:
-        parts.append(_arc(knee, 14 * MM, before.value, 1.4, PAPER.note))
-        parts.append(text(100 * MM, 59 * MM, before.printed, SMALL, weight=600, fill=PAPER.note))
-        parts.append(text(100 * MM, 65 * MM, before.when, WORD, fill=PAPER.note))
-        parts.append(line(*_from(knee, 14 * MM, LEAN_DEG - before.value / 2), 98 * MM, 58 * MM, PAPER.note, 0.8))
-    look = f'fill="{PAPER.paper}" stroke="{PAPER.ink}" stroke-width="2"'
-    parts.append(f'<circle cx="{knee[0]:.2f}" cy="{knee[1]:.2f}" r="6" {look}/>')
+        _draw_arc(draw, knee, 14 * MM, before.value, 1.4, PAPER.note)
+        draw.text(100 * MM, 59 * MM, before.printed, SMALL, weight=600, fill=PAPER.note)
+        draw.text(100 * MM, 65 * MM, before.when, WORD, fill=PAPER.note)
+        draw.line(*_from(knee, 14 * MM, LEAN_DEG - before.value / 2), 98 * MM, 58 * MM, PAPER.note, 0.8)
+    draw.circle(*knee, 6, PAPER.paper, PAPER.ink, 2)
     behind = min(knee[0] - 14 * MM, _from(knee, SHANK, LEAN_DEG - now.value)[0] - 9 * MM)
-    parts.append(text(behind, 54 * MM, now.printed, LARGE, anchor="end", weight=600))
-    parts.append(text(behind, 61.5 * MM, now.when, WORD, anchor="end", weight=500))
-    return picture(parts, WIDTH, HEIGHT, alt)
+    draw.text(behind, 54 * MM, now.printed, LARGE, anchor="end", weight=600)
+    draw.text(behind, 61.5 * MM, now.when, WORD, anchor="end", weight=500)
+    return draw.picture(WIDTH, HEIGHT, alt)
 
 
 def speed_picture(now: LetterValue, before: LetterValue | None, alt: str) -> Picture:
     """How far the patient comes in a second, over how far it was at an earlier visit."""
     longest = max(now.value, before.value if before is not None else 0.0)
     left, most = 13 * MM, 108 * MM
-    parts = [line(left, FLOOR, 149 * MM, FLOOR, PAPER.note, 1.2)]
+    draw = Drawing()
+    draw.line(left, FLOOR, 149 * MM, FLOOR, PAPER.note, 1.2)
     rows = ([(before, 22 * MM)] if before is not None else []) + [(now, 52 * MM)]
     for shown, y in rows:
         is_now = shown is now
         colour, end = PAPER.ink if is_now else PAPER.note, left + most * shown.value / longest
-        parts.append(line(left, y, end, y, colour, 3.0 if is_now else 1.6, "" if is_now else "2.5 2"))
-        parts.append(line(left, y - 3 * MM, left, y + 3 * MM, colour, 1.6))
-        parts.append(f'<path d="M{end - 8:.2f} {y - 6:.2f}L{end:.2f} {y:.2f}L{end - 8:.2f} {y + 6:.2f}" '
+        draw.line(left, y, end, y, colour, 3.0 if is_now else 1.6, "" if is_now else "2.5 2")
+        draw.line(left, y - 3 * MM, left, y + 3 * MM, colour, 1.6)
+        draw.parts.append(f'<path d="M{end - 8:.2f} {y - 6:.2f}L{end:.2f} {y:.2f}L{end - 8:.2f} {y + 6:.2f}" '
                      f'fill="none" stroke="{colour}" stroke-width="{3.0 if is_now else 1.6}"/>')  # fmt: skip
-        parts.append(text(left, y - 5 * MM, shown.printed, LARGE if is_now else SMALL, weight=600, fill=colour))
-        parts.append(text(left, y + 7.5 * MM, shown.when, WORD, fill=colour))
-    return picture(parts, WIDTH, HEIGHT, alt)
+        draw.text(left, y - 5 * MM, shown.printed, LARGE if is_now else SMALL, weight=600, fill=colour)
+        draw.text(left, y + 7.5 * MM, shown.when, WORD, fill=colour)
+    return draw.picture(WIDTH, HEIGHT, alt)
 
 
 def goal_bar(
@@ -82,14 +83,15 @@ def goal_bar(
         return WIDTH * (value - low) / (high - low)
 
     middle, colour = BAR_AT + BAR / 2, PAPER.ink if side is None else COLOURS[side]
-    parts = [_bar(0.0, WIDTH, PAPER.track)]
+    draw = Drawing()
+    _draw_bar(draw, 0.0, WIDTH, PAPER.track)
     if before is not None:
         ends = sorted((at(before.value), at(now.value)))
-        parts.append(_bar(ends[0], ends[1], PAPER.way if side is not Side.LEFT else FILLED[Side.LEFT]))
-        parts.append(_dot(at(before.value), middle, 6.0, PAPER.paper, PAPER.note))
-    parts.append(_dot(at(now.value), middle, 7.5, colour if side is not Side.RIGHT else PAPER.paper, colour))
+        _draw_bar(draw, ends[0], ends[1], PAPER.way if side is not Side.LEFT else FILLED[Side.LEFT])
+        _draw_dot(draw, at(before.value), middle, 6.0, PAPER.paper, PAPER.note)
+    _draw_dot(draw, at(now.value), middle, 7.5, colour if side is not Side.RIGHT else PAPER.paper, colour)
     if goal is not None:
-        parts.append(line(at(goal.value), middle - 5.5 * MM, at(goal.value), middle + 5.5 * MM, PAPER.ink, 2.4))
+        draw.line(at(goal.value), middle - 5.5 * MM, at(goal.value), middle + 5.5 * MM, PAPER.ink, 2.4)
     shown = sorted((one for one in (before, now, goal) if one is not None), key=lambda one: one.value)
     rows: list[float] = []
     for one in shown:
@@ -103,31 +105,38 @@ def goal_bar(
         fill = PAPER.note if one is before else PAPER.ink
         x = min(max(x, 12 * MM if anchor == "middle" else 0.0), WIDTH - (12 * MM if anchor == "middle" else 0.0))
         y = middle + 9.5 * MM + row * 5 * MM
-        parts.append(text(x, y, words, 12.5, anchor=anchor, weight=400 if one is before else 500, fill=fill))
-    return picture(parts, WIDTH, BAR_HEIGHT, alt)
+        draw.text(x, y, words, 12.5, anchor=anchor, weight=400 if one is before else 500, fill=fill)
+    return draw.picture(WIDTH, BAR_HEIGHT, alt)
 
 
-def _bar(start: float, end: float, fill: str) -> str:
+def _draw_bar(draw: Drawing, start: float, end: float, fill: str) -> None:
     place = f'x="{start:.2f}" y="{BAR_AT:.2f}" width="{end - start:.2f}" height="{BAR:.2f}" rx="{BAR / 2:.2f}"'
-    return f'<rect {place} fill="{fill}"/>'
+    draw.parts.append(f'<rect {place} fill="{fill}"/>')
 
 
-def _dot(x: float, y: float, radius: float, fill: str, edge: str) -> str:
+def _draw_dot(draw: Drawing, x: float, y: float, radius: float, fill: str, edge: str) -> None:
     halo = f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius + 1.6:.2f}" fill="{PAPER.paper}"/>'
-    return f'{halo}<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}" fill="{fill}" stroke="{edge}" stroke-width="2"/>'
+    draw.parts.append(halo)
+    draw.circle(x, y, radius, fill, edge, 2)
 
 
-def _shank(knee: tuple[float, float], knee_deg: float, fill: str, edge: str, dash: str) -> list[str]:
+def _draw_shank(draw: Drawing, knee: tuple[float, float], knee_deg: float, fill: str, edge: str, dash: str) -> None:
     tilt = LEAN_DEG - knee_deg
     ankle = _from(knee, SHANK, tilt)
     heel, toes = _from(ankle, -HEEL, tilt + 82), _from(ankle, FOOT, tilt + 82)
-    foot = _segment(heel, toes, HALF["foot"], fill, edge, dash)
-    return [foot, _segment(knee, ankle, HALF["shank"], fill, edge, dash)]
+    _draw_segment(draw, heel, toes, HALF["foot"], fill, edge, dash)
+    _draw_segment(draw, knee, ankle, HALF["shank"], fill, edge, dash)
 
 
-def _segment(
-    start: tuple[float, float], end: tuple[float, float], half: tuple[float, float], fill: str, edge: str, dash: str
-) -> str:
+def _draw_segment(
+    draw: Drawing,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    half: tuple[float, float],
+    fill: str,
+    edge: str,
+    dash: str,
+) -> None:
     """A limb that grows thinner: two half circles and the lines between them."""
     length = math.hypot(end[0] - start[0], end[1] - start[1])
     along = (end[0] - start[0]) / length, (end[1] - start[1]) / length
@@ -142,13 +151,15 @@ def _segment(
         f"L{dx:.2f} {dy:.2f}A{r0:.2f} {r0:.2f} 0 0 0 {ax:.2f} {ay:.2f}Z"
     )
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
-    return f'<path d="{path}" fill="{fill}" stroke="{edge}" stroke-width="2"{dashed}/>'
+    draw.parts.append(f'<path d="{path}" fill="{fill}" stroke="{edge}" stroke-width="2"{dashed}/>')
 
 
-def _arc(knee: tuple[float, float], radius: float, knee_deg: float, width: float, colour: str) -> str:
+def _draw_arc(
+    draw: Drawing, knee: tuple[float, float], radius: float, knee_deg: float, width: float, colour: str
+) -> None:
     start, end = _from(knee, radius, LEAN_DEG), _from(knee, radius, LEAN_DEG - knee_deg)
     path = f"M{start[0]:.2f} {start[1]:.2f}A{radius:.2f} {radius:.2f} 0 0 1 {end[0]:.2f} {end[1]:.2f}"
-    return f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="{width}"/>'
+    draw.parts.append(f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="{width}"/>')
 
 
 def _from(point: tuple[float, float], length: float, forward_deg: float) -> tuple[float, float]:

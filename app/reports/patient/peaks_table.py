@@ -181,7 +181,7 @@ def _row(facts: Facts, column: str) -> list[Cell | str]:
     else:
         in_band = fixed(group_range, 1) if group_range is not None else tr("no reference")
         against = tr("no reference SD") if group_range is not None else NOTHING
-    return [*cells, *_difference_cells(facts, column), in_band, against]
+    return [*cells, *difference_cells(facts, column, 1), in_band, against]
 
 
 def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
@@ -195,12 +195,11 @@ def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
     return Cell(marked(spread(value, 1), verdict), is_grey=not is_spread_enough(value.n))
 
 
-def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
-    """The difference with its mark, and where it is likely to be; none where either leg is not reported."""
-    if not all(facts.value(side, column).n for side in Side):
-        return [NOTHING] * 2
-    found = compare_legs(facts.part, column, facts.first_and_second)
-    if not found.is_reported:
-        return [NOTHING] * 2
-    apart = f"{MARKS[found.mark]} {signed(found.difference, 1)}".strip()
+def difference_cells(facts: Facts, column: str, decimals: int) -> list[Cell | str]:
+    """What the legs differ by, bold and marked beyond its error, and where it is likely to be; none without both."""
+    is_known = all(facts.value(side, column).n for side in Side)
+    found = compare_legs(facts.part, column, facts.first_and_second) if is_known else None
+    if found is None or not found.is_reported:
+        return [NOTHING, NOTHING]
+    apart = f"{MARKS[found.mark]} {signed(found.difference, decimals)}".strip()
     return [Cell(apart, is_bold=found.exceeds), interval_in_figures(column, found)]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.charts.cycles import is_mean_enough
-from app.charts.drawing import COLOURS, MM, Picture, badge, box, line, picture, text
+from app.charts.drawing import COLOURS, MM, Drawing, Picture
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import fixed
 from app.theme.colours import PAPER
@@ -59,25 +59,24 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
     def x(percent: float) -> float:
         return LEFT_EDGE + across * percent / 100
 
-    first = next(iter(phases.values()))
-    parts = []
+    first, draw = next(iter(phases.values())), Drawing()
     for name, percent in zip(events, (0.0, first.foot_flat, first.heel_rise, first.toe_off), strict=True):
         at, anchor = (x(percent) - 2, "end") if percent == 0 else (x(percent), "middle")
-        parts.append(text(max(at, 24 if percent == 0 else at), TOP - 4, name, 6.6, anchor=anchor, fill=PAPER.note))
+        draw.text(max(at, 24 if percent == 0 else at), TOP - 4, name, 6.6, anchor=anchor, fill=PAPER.note)
     stated = []
     for row, (side, found) in enumerate(phases.items()):
         y, at = TOP + ROW * row, 0.0
-        parts.append(badge(6, y + BAR / 2, side.letter, side, COLOURS[side]))
+        draw.badge(6, y + BAR / 2, side.letter, side, COLOURS[side])
         for number, lasts in enumerate(found.lasts):
-            parts += _bar(x(at), y, x(at + lasts) - x(at), number, side)
+            _draw_bar(draw, x(at), y, x(at + lasts) - x(at), number, side)
             words = f"{names[number]} {fixed(lasts, 0)} %".strip()
             room = x(at + lasts) - x(at)
             words = words if len(words) * 3.6 < room else f"{fixed(lasts, 0)} %"
             if len(words) * 3.6 < room:
                 middle = x(at + lasts / 2)
                 if side is Side.RIGHT and HATCH_APART[number]:
-                    parts.append(box(middle - len(words) * 1.9, y + 3, len(words) * 3.8, BAR - 6, PAPER.paper))
-                parts.append(text(middle, y + BAR / 2 + 2.4, words, 6.8, anchor="middle", weight=600))
+                    draw.box(middle - len(words) * 1.9, y + 3, len(words) * 3.8, BAR - 6, PAPER.paper)
+                draw.text(middle, y + BAR / 2 + 2.4, words, 6.8, anchor="middle", weight=600)
             at += lasts
         pattern = tr("{side}: foot flat at {flat} %, heel rise at {rise} %, toe\u2011off at {off} % of the gait cycle.")
         stated.append(
@@ -90,15 +89,13 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
         )
     bottom = TOP + ROW * len(phases) - (ROW - BAR)
     for percent in range(0, 101, 20):
-        parts.append(line(x(percent), bottom, x(percent), bottom + 3, PAPER.ink, 0.5))
-        parts.append(text(x(percent), bottom + 10, f"{percent}{' %' if percent == 100 else ''}", 6.6, anchor="middle"))
-    return picture(parts, WIDTH, bottom + 13, " ".join(stated))
+        draw.line(x(percent), bottom, x(percent), bottom + 3, PAPER.ink, 0.5)
+        draw.text(x(percent), bottom + 10, f"{percent}{' %' if percent == 100 else ''}", 6.6, anchor="middle")
+    return draw.picture(WIDTH, bottom + 13, " ".join(stated))
 
 
-def _bar(left: float, top: float, width: float, number: int, side: Side) -> list[str]:
-    if side is Side.LEFT:
-        return [box(left, top, width, BAR, FILLS[number], PAPER.ink, 0.6)]
-    parts = []
-    if apart := HATCH_APART[number]:
-        parts += [line(at, top, at, top + BAR, PAPER.ink, 0.4) for at in np.arange(left + apart, left + width, apart)]
-    return [*parts, box(left, top, width, BAR, "none", PAPER.ink, 0.6)]
+def _draw_bar(draw: Drawing, left: float, top: float, width: float, number: int, side: Side) -> None:
+    is_left, apart = side is Side.LEFT, HATCH_APART[number]
+    for at in np.arange(left + apart, left + width, apart) if apart and not is_left else ():
+        draw.line(at, top, at, top + BAR, PAPER.ink, 0.4)
+    draw.box(left, top, width, BAR, FILLS[number] if is_left else "none", PAPER.ink, 0.6)

@@ -8,7 +8,7 @@ import tempfile
 from datetime import datetime
 from pathlib import Path
 
-from app.exports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES, describe_tables
+from app.exports.result_folder import REPORT, VISITS, VISITS_CYCLES, describe_tables
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import make_report
 from app.summary.comparison import Contrast
@@ -17,19 +17,12 @@ from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.results import Analysis
 from core.session import Session
 from devices.files.refusal import FileRefusedError
-from devices.files.session_toml import FILE_NAME as SESSION_FILE
 
 PDF = b"%PDF-"
 
 
 def write_report(session: Session, analysis: Analysis, folder: Path, made_at: datetime, version: str) -> None:
-    """Write `report.pdf` into a folder of results; without a walk there is nothing to report.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write `report.pdf` into a results folder, nothing without a walk; raises OSError."""
     visit = AnalysedVisit(session, analysis)
     walks = default_walks(visit)
     if walks:
@@ -38,13 +31,7 @@ def write_report(session: Session, analysis: Analysis, folder: Path, made_at: da
 
 
 def write_visits(request: ReportRequest, folder: Path) -> None:
-    """Write what a report with an earlier visit compares, as tables; without one, nothing.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write the tables of a comparison with an earlier visit, nothing without one; raises OSError."""
     comparison = comparison_of(request)
     if comparison is not None and comparison.kind is Contrast.VISITS:
         write_differences(rows_of(comparison), folder / VISITS)
@@ -53,13 +40,7 @@ def write_visits(request: ReportRequest, folder: Path) -> None:
 
 
 def chosen_walks(visit: AnalysedVisit, required: list[str], session: str) -> tuple[str, ...]:
-    """Give the walks that were asked for, or those a report shows when none was.
-
-    Raises
-    ------
-    FileRefusedError
-        There is no such walk, or none at all.
-    """
+    """Give the walks asked for, else those a report shows; raises FileRefusedError where there is none."""
     names = visit.walk_names()
     for name in required:
         if name not in names:
@@ -73,30 +54,8 @@ def chosen_walks(visit: AnalysedVisit, required: list[str], session: str) -> tup
     return walks
 
 
-def session_of(place: Path) -> Path:
-    """Give the session folder that a report is made from: the place itself, or the recordings inside its results.
-
-    Raises
-    ------
-    FileRefusedError
-        Results without their recordings: there are no angles in them to draw from.
-    """
-    if (place / SUMMARY).is_file() and not (place / SESSION_FILE).is_file():
-        if (place / OWN_SESSION / SESSION_FILE).is_file():
-            return place / OWN_SESSION
-        what = "this holds results without the recordings they were made from"
-        raise FileRefusedError(str(place), what, "Give the session folder instead")
-    return place
-
-
 def check_report_place(out: Path) -> None:
-    """See whether a report may stand at `out`.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else than a PDF is there.
-    """
+    """Raise FileRefusedError where anything but a PDF is at `out`."""
     if out.is_dir():
         raise FileRefusedError(str(out), "this is a folder", "Give the report a file name, such as report.pdf")
     if out.exists():
@@ -107,13 +66,7 @@ def check_report_place(out: Path) -> None:
 
 
 def replace_report(pdf: bytes, out: Path) -> None:
-    """Put a report in its place, whole.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Put a report in its place, whole or not at all; raises OSError."""
     out.parent.mkdir(parents=True, exist_ok=True)
     handle, beside = tempfile.mkstemp(prefix=f".{out.name}-", dir=out.parent)
     try:

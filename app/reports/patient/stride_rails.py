@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from app.charts.cycles import is_spread_enough
-from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, box, line, marker, picture, text
+from app.charts.drawing import COLOURS, DASHES, MM, Drawing, Picture
 from app.summary.facts import Facts, joint_of
 from app.summary.numbers_in_words import fixed
 from app.theme.colours import PAPER
@@ -70,30 +70,23 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
         "ankle": tr("Ankle range of motion per stride, °"),
     }
     title = titles[kind]
-    parts = [text(0, 8, title, 7.6, weight=600)]
+    draw = Drawing()
+    draw.text(0, 8, title, 7.6, weight=600)
     for value in np.arange(low, high + 1, TICK_DEG):
-        parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5))
-        parts.append(text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), 0), 6.8, anchor="end"))
-    parts.append(text(LEFT_EDGE - 5, bottom + 10.5, tr("excl."), 6.6, anchor="end", fill=PAPER.note))
-    parts.append(text(right, bottom + 19, f"{fixed(last_s - first_s, 0)} s", 6.6, anchor="end", fill=PAPER.note))
+        draw.line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5)
+        draw.text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), 0), 6.8, anchor="end")
+    draw.text(LEFT_EDGE - 5, bottom + 10.5, tr("excl."), 6.6, anchor="end", fill=PAPER.note)
+    draw.text(right, bottom + 19, f"{fixed(last_s - first_s, 0)} s", 6.6, anchor="end", fill=PAPER.note)
     stated, ends = [], []
     for side, each in values.items():
         strides = facts.gait[side].strides
         for at_s, value, is_used, reason in zip(strides.start_s, each, used[side], strides.reason, strict=True):
             if is_used and math.isfinite(value):
-                parts += _mark(x(float(at_s)), y(float(value)), side)
+                _draw_mark(draw, x(float(at_s)), y(float(value)), side)
             elif not is_used:
                 down = 8.5 if side is Side.LEFT else 14.5
-                parts.append(
-                    text(
-                        x(float(at_s)),
-                        bottom + down,
-                        LETTERS[reason],
-                        6.6,
-                        anchor="middle",
-                        weight=600,
-                        fill=COLOURS[side],
-                    )
+                draw.text(
+                    x(float(at_s)), bottom + down, LETTERS[reason], 6.6, anchor="middle", weight=600, fill=COLOURS[side]
                 )
         known = used[side] & np.isfinite(each)
         count = int(known.sum())
@@ -113,21 +106,22 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
             means = [float(each[half].mean()) for half in halves]
             for half, mean in zip(halves, means, strict=True):
                 ends_x = x(float(strides.start_s[half[0]])) - 4, x(float(strides.start_s[half[-1]])) + 4
-                parts.append(line(ends_x[0], y(mean), ends_x[1], y(mean), PAPER.ink, 0.9, DASHES[side]))
+                draw.line(ends_x[0], y(mean), ends_x[1], y(mean), PAPER.ink, 0.9, DASHES[side])
             ends.append((y(means[1]), side, f"{fixed(means[0], 1)} → {fixed(means[1], 1)}°"))
     for height, side, words in _apart(ends):
-        parts.append(badge(right + 10, height, side.letter, side, COLOURS[side]))
-        parts.append(text(right + 18, height + 2.4, words, 6.8))
+        draw.badge(right + 10, height, side.letter, side, COLOURS[side])
+        draw.text(right + 18, height + 2.4, words, 6.8)
     if facts.is_simulated:
-        parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
+        draw.text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600)
     alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *(stated or [tr("No strides used.")])])
-    return picture(parts, WIDTH, HEIGHT, alt)
+    return draw.picture(WIDTH, HEIGHT, alt)
 
 
-def _mark(x: float, y: float, side: Side) -> list[str]:
+def _draw_mark(draw: Drawing, x: float, y: float, side: Side) -> None:
     if side is Side.LEFT:
-        return [marker(x, y, side, COLOURS[side], 4.4)]
-    return [box(x - 2, y - 2, 4, 4, PAPER.paper, COLOURS[side], 1.1)]
+        draw.circle(x, y, 2.2, COLOURS[side], PAPER.paper, 0.5)
+    else:
+        draw.box(x - 2, y - 2, 4, 4, PAPER.paper, COLOURS[side], 1.1)
 
 
 def _limits(shown_deg: np.ndarray) -> tuple[float, float]:

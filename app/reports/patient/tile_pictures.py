@@ -2,14 +2,14 @@
 
 import math
 
-from app.charts.drawing import MM, Picture, box, line, picture
+from app.charts.drawing import MM, Drawing, Picture
 from app.charts.joint_on_paper import CURVES
 from app.summary.tiles import Tile, TileChange, TileValue
 from app.theme.colours import LIGHT, PAPER
 from core.body import Side
 
 WIDTH, HEIGHT, TRACK = 34 * MM, 12.0, 2.6
-NOW, LAST, TICK = 2.6, 2.1, 10.0  # radii, and a goal's length
+NOW, LAST, EDGE, TICK = 2.6, 2.1, 1.1, 10.0  # radii, their line's width, and a goal's length
 ARROW = 6.5
 
 
@@ -20,19 +20,22 @@ def bar(tile: Tile) -> Picture:
     def x(value: float) -> float:
         return NOW + (WIDTH - 2 * NOW) * min(max((value - low) / (high - low), 0.0), 1.0)
 
-    parts = [box(0, y - TRACK / 2, WIDTH, TRACK, LIGHT.track)]
+    draw = Drawing()
+    draw.box(0, y - TRACK / 2, WIDTH, TRACK, LIGHT.track)
     if tile.zone is not None:
         left, right = (x(edge) for edge in tile.zone)
-        parts.append(box(left, y - TRACK / 2, right - left, TRACK, LIGHT.band_1sd))
-    parts += [line(x(goal), y - TICK / 2, x(goal), y + TICK / 2, PAPER.ink, 1.3) for goal in tile.goals]
+        draw.box(left, y - TRACK / 2, right - left, TRACK, LIGHT.band_1sd)
+    for goal in tile.goals:
+        draw.line(x(goal), y - TICK / 2, x(goal), y + TICK / 2, PAPER.ink, 1.3)
     for value in tile.values:
         if math.isfinite(value.value):
             if math.isfinite(value.last):
-                parts.append(line(x(value.last), y, x(value.value), y, PAPER.note, TRACK * 0.6))
-                parts.append(_circle(x(value.last), y, LAST, PAPER.paper, _colour(value)))
+                draw.line(x(value.last), y, x(value.value), y, PAPER.note, TRACK * 0.6)
+                draw.circle(x(value.last), y, LAST, PAPER.paper, _colour(value), EDGE)
             is_hollow = value.side is Side.RIGHT
-            parts.append(_circle(x(value.value), y, NOW, PAPER.paper if is_hollow else _colour(value), _colour(value)))
-    return picture(parts, WIDTH, HEIGHT)
+            fill = PAPER.paper if is_hollow else _colour(value)
+            draw.circle(x(value.value), y, NOW, fill, _colour(value), EDGE)
+    return draw.picture(WIDTH, HEIGHT)
 
 
 def arrow(change: TileChange) -> Picture:
@@ -40,13 +43,10 @@ def arrow(change: TileChange) -> Picture:
     top, bottom = (0.8, ARROW - 0.8) if change.rises else (ARROW - 0.8, 0.8)
     corners = f"{ARROW / 2},{top} {ARROW - 0.6},{bottom} 0.6,{bottom}"
     fill = PAPER.ink if change.is_beyond_error else PAPER.paper
-    shape = f'<polygon points="{corners}" fill="{fill}" stroke="{PAPER.ink}" stroke-width="0.9"/>'
-    return picture([shape], ARROW, ARROW)
+    draw = Drawing()
+    draw.parts.append(f'<polygon points="{corners}" fill="{fill}" stroke="{PAPER.ink}" stroke-width="0.9"/>')
+    return draw.picture(ARROW, ARROW)
 
 
 def _colour(value: TileValue) -> str:
     return CURVES[value.side] if value.side is not None else PAPER.ink
-
-
-def _circle(x: float, y: float, radius: float, fill: str, edge: str) -> str:
-    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius}" fill="{fill}" stroke="{edge}" stroke-width="1.1"/>'

@@ -9,18 +9,16 @@ from app.charts.on_paper import draw
 from app.charts.stride_chart import StrideChart
 from app.reports.blocks import Block, Cell, Column, Row, figures, heading, note, table
 from app.reports.patient.evidence import evidence
+from app.reports.patient.peaks_table import difference_cells
 from app.reports.patient.pelvis_table import pelvis_table
 from app.reports.patient.phase_bars import phase_bars, phases_of
 from app.reports.patient.stride_rails import reasons_in_words, stride_rail
 from app.summary import panels
-from app.summary.comparison import compare_legs
 from app.summary.conditions import by_hand_in_words
 from app.summary.facts import Facts, joint_of
-from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import (
     CARE,
     DAGGER,
-    MARKS,
     NOTHING,
     against_band,
     band_in_figures,
@@ -28,7 +26,6 @@ from app.summary.numbers_in_words import (
     fixed,
     marked,
     sides_against_band,
-    signed,
     spread,
 )
 from app.summary.plain_text import CONDITION_LENGTH, typed
@@ -36,7 +33,6 @@ from app.wording.translation import tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 
 PLOT_WIDTH, ALONE_WIDTH = 31 * MM, 66 * MM  # of single strides, below the rails or where there are none
@@ -131,13 +127,8 @@ def _side_row(facts: Facts, column: str, label: str, decimals: int) -> list[Cell
     cells = [_mean_cell(facts, side, column, value, decimals) for side, value in values.items()]
     in_band = band_in_figures(band, decimals) if band is not None else NOTHING
     judged = {s: v for s, v in values.items() if is_mean_enough(v.n) and s in facts.sides_with_band}
-    return [
-        label,
-        *cells,
-        *difference_cells(column, _between(facts, column), decimals),
-        in_band,
-        sides_against_band(judged, judged_band),
-    ]
+    against = sides_against_band(judged, judged_band)
+    return [label, *cells, *difference_cells(facts, column, decimals), in_band, against]
 
 
 def _mean_cell(facts: Facts, side: Side, column: str, value: MeanAndSd, decimals: int) -> Cell | str:
@@ -149,27 +140,8 @@ def _mean_cell(facts: Facts, side: Side, column: str, value: MeanAndSd, decimals
     return Cell(marked(spread(value, decimals), verdict), is_grey=not is_spread_enough(value.n))
 
 
-def _between(facts: Facts, column: str) -> Difference | None:
-    """What the legs differ by in a column of strides.csv; None where it is not reported for both."""
-    if not all(facts.value(side, column).n for side in Side):
-        return None
-    found = compare_legs(facts.part, column, facts.first_and_second)
-    return found if found.is_reported else None
-
-
-def difference_cells(column: str, found: Difference | None, decimals: int) -> list[Cell | str]:
-    """The difference, bold and marked where it exceeds its error, and where it is likely to be."""
-    if found is None:
-        return [NOTHING, NOTHING]
-    apart = f"{MARKS[found.mark]} {signed(found.difference, decimals)}".strip()
-    return [Cell(apart, is_bold=found.exceeds), interval_in_figures(column, found)]
-
-
 def _single_support_row(facts: Facts) -> list[Cell | str]:
-    """A leg is in single support while the other swings; each in % of the swinging leg's stride.
-
-    As with double support, both legs' timing has to be beyond doubt.
-    """
+    """Give each leg's single support in % of the swinging leg's stride, if both legs' timing is beyond doubt."""
     is_not_reported = bool(facts.time_distance[DOUBLE_SUPPORT].unknown_both)
     cells: list[Cell | str] = []
     for other in (Side.RIGHT, Side.LEFT):

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, line, picture, text
+from app.charts.drawing import COLOURS, DASHES, MM, Drawing, Picture
 from app.summary.numbers_in_words import fixed
 from app.summary.trend_lines import TrendValue
 from app.theme.colours import PAPER
@@ -34,11 +34,7 @@ def trend_chart(
     goals: Sequence[tuple[float, str]] = (),
     least_span: float = 0.0,
 ) -> Picture:
-    """A line for each leg, or one for both; visits are numbered from 1 in order of time.
-
-    `goals` are values with the words that stand beside the title: what was agreed, and when. Of less than `least_span`
-    the axis is none: what nobody judges is not to look large.
-    """
+    """Draw a line per leg, or one for both, over visits from 1; the axis spans at least `least_span`."""
     reported = [one for values in lines.values() for one in values if math.isfinite(one.value)]
     reach = [
         one.value + sign * (one.whisker if math.isfinite(one.whisker) else 0.0) for one in reported for sign in (-1, 1)
@@ -57,67 +53,65 @@ def trend_chart(
     def y(value: float) -> float:
         return bottom - (bottom - top) * (value - low) / (high - low)
 
-    parts = [text(0, 8, title, 7.6, weight=600)]
+    draw = Drawing()
+    draw.text(0, 8, title, 7.6, weight=600)
     for value in np.arange(low, high + step / 2, step):
-        parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5))
-        parts.append(text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), _decimals(step)), 6.8, anchor="end"))
+        draw.line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5)
+        draw.text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), _decimals(step)), 6.8, anchor="end")
     for value, _ in goals:
-        parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink, 1.1, "1.4 2"))
+        draw.line(LEFT_EDGE, y(value), right, y(value), PAPER.ink, 1.1, "1.4 2")
     for number, (_, words) in enumerate(goals):
-        parts.append(text(right, 17 + OF_GOALS * number, f"· · · {words}", 6.4, anchor="end"))
+        draw.text(right, 17 + OF_GOALS * number, f"· · · {words}", 6.4, anchor="end")
     written = -math.inf
     for visit, day in enumerate(days):
-        parts.append(line(x(visit), bottom, x(visit), bottom + 3, PAPER.ink, 0.6))
+        draw.line(x(visit), bottom, x(visit), bottom + 3, PAPER.ink, 0.6)
         if x(visit) - written >= APART:
-            parts.append(text(x(visit), bottom + 11, str(visit + 1), 7, anchor="middle", weight=600))
-            parts.append(text(x(visit), bottom + 20, short_date(day), 6.4, anchor="middle", fill=PAPER.note))
+            draw.text(x(visit), bottom + 11, str(visit + 1), 7, anchor="middle", weight=600)
+            draw.text(x(visit), bottom + 20, short_date(day), 6.4, anchor="middle", fill=PAPER.note)
             written = x(visit)
     stated = []
     for side, values in lines.items():
         aside = {Side.LEFT: -NEAR, Side.RIGHT: NEAR, None: 0.0}[side] if len(lines) > 1 else 0.0
-        parts += _line(side, values, x, y, aside, bottom)
+        _draw_line(draw, side, values, x, y, aside, bottom)
         each = ", ".join(f"{one.visit + 1}: {fixed(one.value, decimals)}" for one in values)
         stated.append(f"{capitalised(side_name(side))}: {each}." if side is not None else f"{each}.")
     if is_simulated:
-        parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
+        draw.text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600)
     if agreed:
         stated.append(f"{agreed}.")
-    return picture(parts, WIDTH, HEIGHT, " ".join([tr("SIMULATED.")] * is_simulated + [f"{title}.", *stated]))
+    return draw.picture(WIDTH, HEIGHT, " ".join([tr("SIMULATED.")] * is_simulated + [f"{title}.", *stated]))
 
 
-def _line(
+def _draw_line(
+    draw: Drawing,
     side: Side | None,
     values: Sequence[TrendValue],
     x: Callable[[int], float],
     y: Callable[[float], float],
     aside: float,
     bottom: float,
-) -> list[str]:
+) -> None:
     """A leg's values, joined where every visit between them is reported, each with its whisker."""
     colour, dash = (COLOURS[side], DASHES[side]) if side is not None else (PAPER.ink, "")
-    parts = []
     for one, other in pairwise(values):
         if math.isfinite(one.value) and math.isfinite(other.value):
-            parts.append(
-                line(x(one.visit) + aside, y(one.value), x(other.visit) + aside, y(other.value), colour, 1.2, dash)
-            )
+            draw.line(x(one.visit) + aside, y(one.value), x(other.visit) + aside, y(other.value), colour, 1.2, dash)
     for one in values:
         at = x(one.visit) + aside
         if not math.isfinite(one.value):
-            parts.append(text(at, bottom - 4, tr("not reported"), 6.4, anchor="middle", fill=PAPER.note))
+            draw.text(at, bottom - 4, tr("not reported"), 6.4, anchor="middle", fill=PAPER.note)
             continue
         if math.isfinite(one.whisker):
             ends = y(one.value - one.whisker), y(one.value + one.whisker)
-            parts.append(line(at, ends[0], at, ends[1], PAPER.ink, 0.8))
-            parts += [line(at - 2.4, end, at + 2.4, end, PAPER.ink, 0.8) for end in ends]
+            draw.line(at, ends[0], at, ends[1], PAPER.ink, 0.8)
+            for end in ends:
+                draw.line(at - 2.4, end, at + 2.4, end, PAPER.ink, 0.8)
         if side is None:
             height = y(one.value)
             corners = ((at, height - 4), (at + 4, height), (at, height + 4), (at - 4, height))
-            tips = " ".join(f"{px:.2f},{py:.2f}" for px, py in corners)
-            parts.append(f'<polygon points="{tips}" fill="{PAPER.ink}"/>')
+            draw.polygon(corners, PAPER.ink)
         else:
-            parts.append(badge(at, y(one.value), side.letter, side, colour, 7.6))
-    return parts
+            draw.badge(at, y(one.value), side.letter, side, colour, 7.6)
 
 
 def _axis(low: float, high: float) -> tuple[float, float, float]:

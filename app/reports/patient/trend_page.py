@@ -14,7 +14,7 @@ from app.summary.interval_words import evidence, interval_in_figures
 from app.summary.measure_sentences import Reported, change_sentence, unit_and_decimals, who_of_role
 from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, in_brief, signed
 from app.summary.plain_text import CONDITION_LENGTH, shortened, typed
-from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.summary.trend_lines import TrendLine, all_lines, trend_columns, trend_lines, walked_visits
 from app.summary.visits import condition_in_words
 from app.wording.dates import date, short_date
 from app.wording.measures import least_span, name_with_unit
@@ -33,18 +33,11 @@ BY_LENGTH = 16
 
 
 def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> list[Block]:
-    """A page of its own; nothing where fewer than two visits have a value under this condition.
-
-    Parameters
-    ----------
-    visits
-        In order of time; the last is that of the report.
-    """
+    """Make a page of trends; none under two visits with a value. `visits` in time order, the report's last."""
     walked = walked_visits(visits, condition)
     agreed = facts.part.agreed
     columns = trend_columns(agreed)
-    lines = trend_lines(walked, condition, (*columns, *COLUMNS.values()), agreed)
-    shown = [line for line in lines if len(line.reported) > 1]
+    shown = [line for line in all_lines(visits, condition, agreed) if len(line.reported) > 1]
     if not shown:
         return []
     days = [visit.day for visit in walked]

@@ -14,6 +14,7 @@ import hmac
 import json
 import logging
 import shutil
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -60,27 +61,13 @@ _log = logging.getLogger(__name__)
 
 
 def remember_operators(opened: OpenedLibrary) -> None:
-    """Keep who works at the clinic, for when its server does not answer.
-
-    Raises
-    ------
-    LibraryError
-        The server does not answer.
-    OSError
-        The station's folder cannot be written.
-    """
+    """Keep who works at the clinic, for when its server does not answer; raises LibraryError or OSError."""
     reported = [asdict(operator) for operator in opened.library.operators.list()]
     replace_file(opened.folder / OPERATORS, json.dumps(reported, indent=1).encode())
 
 
 def open_away(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
-    """Open the library that the station in `folder` works with while the server does not answer, for an operator.
-
-    Raises
-    ------
-    LibraryError
-        Nobody of this code has worked at this station, or the folder cannot be written.
-    """
+    """Open a station's own library while the server is away; raises LibraryError (unknown code, no access)."""
     station, operator = station_of(folder), _remembered(folder, code)
     away = folder / AWAY
     if (away / DATABASE).exists():
@@ -103,17 +90,8 @@ def has_been_away(opened: OpenedLibrary) -> bool:
 
 
 def bring_away_home(opened: OpenedLibrary) -> int:
-    """Take to the server what was recorded while it did not answer; how many sessions that were.
-
-    Journals are then the station's own: recordings that were not stopped are found as any other, and all are handed
-    over. To be done before either is looked for.
-
-    Raises
-    ------
-    LibraryError
-        The server does not answer or does not take it, or somebody works without it still: it stays here.
-    OSError
-        A file cannot be read or moved.
+    """Send what was recorded while the server did not answer, and give the number of sessions.
+    To be done before interrupted recordings are searched for. Raises LibraryError (it stays here), OSError.
     """
     if opened.shared is None:
         return 0
@@ -173,36 +151,33 @@ def _bring_rows(opened: OpenedLibrary, folder: Path) -> tuple[int, bool]:
     station = opened.library.station
     assert station is not None  # the caller has asked
     name = MARK.format(library=read_id(folder))
-    source = Database(sqlite_engine(folder / DATABASE, opened.data_key, creates=False))
-    try:
-        with source.reading() as here, opened.library.database.writing() as there:
-            mark, end = there.get(SettingRow, name), end_of_audit(here)
-            if mark is not None and mark.value == str(end):
-                return 0, True
-            refuse_closed(there)
-            covered = _covered(here, mark)
-            patients = _bring_patients(here, there)
-            count, is_covered = 0, True
-            for table in Base.metadata.sorted_tables:
-                if table.name not in OWN_TO_EACH:
-                    added, are_same = _bring_table(here, there, table, patients, station.id)
-                    count += added if table.name == "sessions" else 0
-                    is_covered &= are_same or table.name in DERIVED
-            _bring_corrections(here, there, patients)
-            _bring_audit(here, there, opened, covered)
-            if mark is None:
-                there.add(SettingRow(name=name, value=str(end)))
-            else:
-                mark.value = str(end)
-            return count, is_covered
-    finally:
-        source.close()
+    with (
+        closing(Database(sqlite_engine(folder / DATABASE, opened.data_key, creates=False))) as source,
+        source.reading() as here,
+        opened.library.database.writing() as there,
+    ):
+        mark, end = SettingRow.of(there, name), end_of_audit(here)
+        if mark == str(end):
+            return 0, True
+        refuse_closed(there)
+        covered = _covered(here, mark)
+        patients = _bring_patients(here, there)
+        count, is_covered = 0, True
+        for table in Base.metadata.sorted_tables:
+            if table.name not in OWN_TO_EACH:
+                added, are_same = _bring_table(here, there, table, patients, station.id)
+                count += added if table.name == "sessions" else 0
+                is_covered &= are_same or table.name in DERIVED
+        _bring_corrections(here, there, patients)
+        _bring_audit(here, there, opened, covered)
+        SettingRow.put(there, name, str(end))
+        return count, is_covered
 
 
-def _covered(here: OrmSession, mark: SettingRow | None) -> int:
+def _covered(here: OrmSession, mark: object) -> int:
     """Find up to which entry of its own audit a library is on the server; 0 where it went another way since."""
     try:
-        end = Checkpoint.parsed(str(mark.value)) if mark is not None else BEGINNING
+        end = Checkpoint.parsed(str(mark)) if mark is not None else BEGINNING
     except LibraryError:  # of an earlier version, which kept the time
         return 0
     row = here.get(AuditRow, end.number)

@@ -22,15 +22,7 @@ _log = logging.getLogger(__name__)
 
 
 def hand_over(opened: OpenedLibrary) -> frozenset[UUID]:
-    """Hand over all journals of recordings that have ended; the recordings of which something was handed over.
-
-    Raises
-    ------
-    LibraryError
-        The server or the shared place does not answer; what was handed over until then is.
-    OSError
-        A journal cannot be read: it stays here.
-    """
+    """Hand over journals of ended recordings and give these; on LibraryError the earlier ones are there."""
     shared = opened.shared
     if shared is None:
         return frozenset()
@@ -49,13 +41,7 @@ def hand_over(opened: OpenedLibrary) -> frozenset[UUID]:
 
 
 def count_waiting(opened: OpenedLibrary) -> int:
-    """How many recordings are on this station's disk alone, as the names of files and their rows show.
-
-    Raises
-    ------
-    LibraryError
-        The server does not answer.
-    """
+    """Count recordings on this station's disk alone; raises LibraryError."""
     return len(_waiting(opened)) if opened.shared is not None else 0
 
 
@@ -69,10 +55,7 @@ def _waiting(opened: OpenedLibrary) -> dict[UUID, dict[int, Path]]:
 
 
 def begin_station(opened: OpenedLibrary) -> None:
-    """What a station does when it is opened, before anything is looked for: what was handed over is a copy now.
-
-    Journals that were destroyed at another station go, and copies of them. Nothing here is worth not to open for.
-    """
+    """Make handed-over journals copies and remove those destroyed elsewhere, before any search for journals."""
     shared = opened.shared
     if shared is None:
         return

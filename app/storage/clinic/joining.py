@@ -1,6 +1,7 @@
 """Make a computer a station of the clinic, and make the server ready for its library."""
 
 import os
+from contextlib import closing
 from pathlib import Path
 from uuid import uuid4
 
@@ -19,31 +20,14 @@ from app.storage.stored import LibraryError
 
 
 def new_station(address: str, journals: str = "") -> Station:
-    """A station that is not in any folder yet.
-
-    Raises
-    ------
-    LibraryError
-        The address is none of a PostgreSQL server.
-    """
+    """Make a station without a folder yet; raises LibraryError unless a PostgreSQL address."""
     driver_url(address)
     return Station(str(uuid4()), address.strip(), journals)
 
 
 def join(folder: Path, address: str, journals: str = "") -> Station:
-    """Make `folder`, which is empty or not there, that of a new station of the library at `address`.
-
-    Who works there logs in with the passphrase as always. `journals`: the shared place, as it is called here; whoever
-    writes on the server could name another, so it is the station's from now on.
-
-    Raises
-    ------
-    LibraryError
-        The address is none, the server does not answer or has no library, or something is in the folder.
-    PlaceUnconfirmedError
-        No place was named here; the error gives the one that the server names.
-    PlaceMissingError
-        The shared place is not there under this name.
+    """Make an empty or missing folder a new station's; `journals`: the shared place as called here.
+    Raises LibraryError, PlaceMissingError or PlaceUnconfirmedError, which gives the place named there.
     """
     station = new_station(address, journals or os.environ.get(JOURNALS_VARIABLE, ""))
     database = station.database_once()
@@ -55,8 +39,7 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
     with database.reading() as session:
         refuse_closed(session)
         library_id = str(session.get_one(SettingRow, ID_SETTING).value)
-        place = session.get(SettingRow, JOURNALS_SETTING)
-    named = str(place.value) if place is not None else ""
+        named = str(SettingRow.of(session, JOURNALS_SETTING, ""))
     if not station.journals:
         raise PlaceUnconfirmedError(named)
     JournalStore(station.journals).refuse_missing()
@@ -68,30 +51,15 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
 
 
 def refuse_silent(station: Station) -> None:
-    """See that the clinic's server answers, and has the library.
-
-    Raises
-    ------
-    LibraryError
-        It does not, or has none.
-    """
+    """Raise LibraryError where the clinic's server does not answer or has no library."""
     with station.database_once().reading() as session:
         refuse_closed(session)
 
 
 def prepare_server(address: str) -> None:
-    """Make the tables and roles on a server, or bring them up to date; stations' logins cannot.
-
-    Raises
-    ------
-    LibraryError
-        The address is none, the server does not answer, or this login may not make tables.
-    """
-    database = Database(postgres_engine(driver_url(address)))
-    try:
+    """Create or update a server's tables and roles, as stations' logins cannot; raises LibraryError."""
+    with closing(Database(postgres_engine(driver_url(address)))) as database:
         bring_up_to_date(database)
-    finally:
-        database.close()
 
 
 def is_station(folder: Path) -> bool:

@@ -12,13 +12,12 @@ import os
 import re
 import secrets
 import shutil
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from app.storage.files import sync_folder
+from app.storage.files import replacing
 from app.storage.layout import SUFFIX
 from app.storage.stored import LibraryError, LibraryFaultError
 from app.wording.translation import tr
@@ -57,7 +56,7 @@ class JournalStore:
     def __init__(self, place: str) -> None:
         self.place = place
         try:
-            import fsspec
+            import fsspec  # an extra, of clinics
         except ImportError:
             raise LibraryError(
                 "The component for the clinic's shared storage is not installed", "Run: pip install .[clinic]"
@@ -84,15 +83,7 @@ class JournalStore:
         self._root = str(Path(place)) if self._is_local else place.removeprefix(S3).rstrip("/")
 
     def refuse_missing(self) -> None:
-        """See that the place is there: a folder whose disk is not mounted is not made up for by another.
-
-        Raises
-        ------
-        PlaceMissingError
-            It is not.
-        LibraryFaultError
-            It does not answer.
-        """
+        """Raise PlaceMissingError where the folder is not there, LibraryFaultError where it does not answer."""
         try:
             with _reported():
                 # of a bucket only that it is there: a folder in it comes with its first journal
@@ -105,15 +96,7 @@ class JournalStore:
             ) from None
 
     def put(self, path: Path) -> str:
-        """Bring a journal there and read it back; returns its name there, as its bytes are now.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, is full, or gives back something else.
-        OSError
-            The file here cannot be read.
-        """
+        """Put a journal there, read it back, give its name there; raises LibraryFaultError or OSError."""
         self.refuse_missing()
         name = name_in_place(path)
         at, sha256 = self._at(name), name.removesuffix(SUFFIX)
@@ -134,53 +117,25 @@ class JournalStore:
         )
 
     def fetch(self, name: str, target: Path) -> None:
-        """Bring a journal here, beside its place first; its content matches its name, or it is not there.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, or does not have it as it was.
-        OSError
-            The file here cannot be written.
-        """
+        """Fetch a journal, verified against its name, whole or not at all; raises LibraryFaultError, OSError."""
         digest = hashlib.sha256()
         target.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        descriptor, beside = tempfile.mkstemp(dir=target.parent, prefix=".fetching-")
-        try:
-            with os.fdopen(descriptor, "wb") as here:
-                for piece in self._pieces(name):
-                    digest.update(piece)
-                    here.write(piece)
-                here.flush()
-                os.fsync(here.fileno())
+        with replacing(target, target.with_name(f".fetching-{secrets.token_hex(8)}")) as here:
+            for piece in self._pieces(name):
+                digest.update(piece)
+                here.write(piece)
             if digest.hexdigest() + SUFFIX != name:
                 raise LibraryFaultError(
                     "A recording in the clinic's shared storage is damaged", "Restore the recording there from a backup"
                 )
-            Path(beside).replace(target)
-            sync_folder(target.parent)
-        finally:
-            Path(beside).unlink(missing_ok=True)
 
     def destroy(self, name: str) -> None:
-        """Remove a journal for good; versions and snapshots that the place keeps are whose it is.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, or refuses.
-        """
+        """Remove a journal, though not the place's versions or snapshots; raises LibraryFaultError."""
         with _reported(), contextlib.suppress(FileNotFoundError):
             self._files.rm_file(self._at(name))
 
     def tidy(self, now_s: Callable[[], float] = time.time) -> None:
-        """Remove what was left when a station was killed while it put a journal there.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, or refuses.
-        """
+        """Remove what stations killed while putting a journal left there; raises LibraryFaultError."""
         if not self._is_local:
             return  # an object that was not finished has no name
         with _reported():
@@ -202,34 +157,17 @@ class JournalStore:
         return f"{self._root}/{name}"
 
     def _put_beside(self, here: BinaryIO, target: str) -> None:
-        beside = f"{self._root}/{UNFINISHED}{secrets.token_hex(8)}"
-        descriptor = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o660)  # for the stations' group
-        try:
-            with os.fdopen(descriptor, "wb") as there:
-                shutil.copyfileobj(here, there, PIECE_BYTES)
-                there.flush()
-                os.fsync(there.fileno())
-            Path(beside).replace(target)
-            sync_folder(Path(target).parent)
-        finally:
-            Path(beside).unlink(missing_ok=True)
+        beside = Path(self._root) / f"{UNFINISHED}{secrets.token_hex(8)}"
+        with replacing(Path(target), beside, 0o660) as there:  # for the stations' group
+            shutil.copyfileobj(here, there, PIECE_BYTES)
 
     def _sha256_there(self, at: str) -> str:
-        digest = hashlib.sha256()
         with self._files.open(at, "rb") as there:
-            while piece := there.read(PIECE_BYTES):
-                digest.update(piece)
-        return digest.hexdigest()
+            return hashlib.file_digest(there, "sha256").hexdigest()
 
 
 def name_in_place(path: Path) -> str:
-    """What a journal is called in the shared place, as its bytes are now.
-
-    Raises
-    ------
-    OSError
-        It cannot be read.
-    """
+    """Give a journal's name in the shared place, from its present bytes; raises OSError."""
     with path.open("rb") as here:
         return hashlib.file_digest(here, "sha256").hexdigest() + SUFFIX
 

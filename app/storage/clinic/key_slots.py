@@ -71,13 +71,7 @@ class SharedKeySlots(KeySlots):
         self._known = content
 
     def _on_server(self) -> bytes | None:
-        """None: it does not answer.
-
-        Raises
-        ------
-        FileNotFoundError
-            It answers, and has no library.
-        """
+        """Read the server's slots; None: no answer; raises FileNotFoundError where it has no library."""
         try:
             with self._database.reading() as session:
                 content = _content_of(session)
@@ -98,11 +92,7 @@ class SharedKeySlots(KeySlots):
 
 def put_slots(session: OrmSession, content: bytes) -> None:
     """Keep the slots' file on the server."""
-    row, value = session.get(SettingRow, SLOTS_SETTING), json.loads(content)
-    if row is None:
-        session.add(SettingRow(name=SLOTS_SETTING, value=value))
-    else:
-        row.value = value
+    SettingRow.put(session, SLOTS_SETTING, json.loads(content))
 
 
 def _content_of(session: OrmSession) -> bytes | None:

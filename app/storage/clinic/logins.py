@@ -14,13 +14,7 @@ PASSWORD_BYTES = 24
 
 
 def station_login(station: Station) -> Station:
-    """Give a station an address with a login of its own, which `let_in` makes on the server.
-
-    Raises
-    ------
-    LibraryError
-        The address is none of a PostgreSQL server.
-    """
+    """Give a station an address with its own login, which `let_in` makes; raises LibraryError."""
     url = make_url(driver_url(station.database)).set(
         drivername="postgresql",
         username=f"gaitwright_{station.id.partition('-')[0]}",
@@ -30,14 +24,8 @@ def station_login(station: Station) -> Station:
 
 
 def let_in(server: Database, own: Station) -> None:
-    """Make the login of a station; `server` is open by one that may.
-
-    Raises
-    ------
-    LibraryError
-        It may not.
-    """
-    from psycopg import sql
+    """Make a station's login on a server open with the rights to; raises LibraryError without them."""
+    from psycopg import sql  # an extra, of clinics
 
     url = make_url(own.database)
     with server.reading() as session:

@@ -11,6 +11,7 @@ A folder that is being moved is not opened meanwhile, nor is a server whose libr
 import json
 import shutil
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,23 +56,9 @@ class Moved:
 
 
 def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> Moved:
-    """Take a library that is in a folder to the clinic's server, and make its folder a station's; `opened` is closed.
-
-    The caller holds the folder alone. Interrupted, it is called again, with the folder opened for being moved.
-
-    Parameters
-    ----------
-    station
-        Names the server, by a login that may make tables and logins, and, in `journals`, the shared place. The folder
-        keeps a login of its own.
-
-    Raises
-    ------
-    LibraryError
-        A recording goes on, the server has another library, does not answer or does not allow it, or what is there is
-        not what was here. The folder's rows and files are as they were.
-    OSError
-        A file cannot be read or written.
+    """Move a folder's library to the clinic's server; the folder becomes a station's and `opened` is closed.
+    The caller holds the folder alone and calls again after an abort; `station` has a login to make tables.
+    Raises LibraryError (rows and files are as before) or OSError.
     """
     folder, library = opened.folder, opened.library
     own = station_login(station)
@@ -79,8 +66,8 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
         raise LibraryError("Only a library in a folder can be moved to a server", "Open your own library")
     if any(not one.problem for one in find_interrupted(opened)):
         raise LibraryError("A recording is running or was not completed", "Stop or review it, then move the library")
-    store, server = JournalStore(station.journals), station.database_kept()
-    try:
+    store = JournalStore(station.journals)
+    with closing(station.database_kept()) as server:
         refuse_nul(library.database)
         store.refuse_missing()
         bring_up_to_date(server)
@@ -102,8 +89,6 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
                 set_state(session, ServerState.OPEN)
         else:
             moved = _counted(server, 0, 0)
-    finally:
-        server.close()
     library.close()
     become_station(folder, own)
     report(1.0, "")
@@ -111,15 +96,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
 
 
 def give_up_moving(folder: Path) -> None:
-    """Let a folder be worked with again whose move was broken off; what is on the server already is never opened.
-
-    Raises
-    ------
-    LibraryError
-        The move came to its end, or so near to it that the server may be open already.
-    OSError
-        The mark cannot be removed.
-    """
+    """Reopen a folder whose move was broken off; raises LibraryError if too late, OSError."""
     if (folder / STATION).exists():
         raise LibraryError("This library is already on the clinic's server", "Move the library back from the server")
     if (folder / MOVING).exists() and (folder / MOVING).read_bytes() == LAST_STEP:
@@ -128,31 +105,15 @@ def give_up_moving(folder: Path) -> None:
 
 
 def give_up_early(folder: Path) -> None:
-    """As `give_up_moving`, for a move that failed before its last step; later the mark stays, and the move goes on.
-
-    Raises
-    ------
-    OSError
-        The mark cannot be read or removed.
-    """
+    """As `give_up_moving` if the move failed before its last step; later the mark stays and the move goes on."""
     mark = folder / MOVING
     if mark.exists() and mark.read_bytes() != LAST_STEP:
         give_up_moving(folder)
 
 
 def bring_back(opened: OpenedLibrary, folder: Path, report: Report, *, is_copy: bool = False) -> Moved:
-    """Make a library in a folder of the clinic's, with all its journals; the one on the server is then closed to all.
-
-    Interrupted, nothing is in `folder`, and it is called again, with the station opened for being moved. `is_copy`: the
-    clinic goes on with the server, and the folder is a copy that opens by itself.
-
-    Raises
-    ------
-    LibraryError
-        This is no station, a recording goes on or was not handed over yet, the server or the shared place does not
-        answer, something is in `folder`, or what is there is not what is on the server.
-    OSError
-        A file cannot be written.
+    """Bring the clinic's library into `folder` and, unless `is_copy`, close the server's; may be called again.
+    Raises LibraryError (not a station, recording or waiting, no answer, not empty, differs) or OSError.
     """
     shared, library = opened.shared, opened.library
     if shared is None:
@@ -180,16 +141,8 @@ def bring_back(opened: OpenedLibrary, folder: Path, report: Report, *, is_copy: 
 
 
 def bring_back_here(opened: OpenedLibrary, report: Report) -> Moved:
-    """Make the station's own folder the clinic's library, and close the one on the server; `opened` is closed.
-
-    The caller holds the folder alone. The folder is a station's until all is in it, and then no longer.
-
-    Raises
-    ------
-    LibraryError
-        As `bring_back`, or something was recorded here that is in no session yet.
-    OSError
-        A file cannot be written: the server is open to its stations again.
+    """Make the station's folder the clinic's library, close the server's and `opened`; caller holds it alone.
+    Raises LibraryError as `bring_back` or for recordings in no session; OSError: the server is open again.
     """
     folder, server = opened.folder, opened.library.database
     if count_waiting(opened):
@@ -231,20 +184,14 @@ def become_station(folder: Path, station: Station) -> None:
 
 
 def _state_for(server: Database, source: Database) -> ServerState | None:
-    """How far this library is on the server; None: nothing of it is there.
-
-    Raises
-    ------
-    LibraryError
-        Another library is there, or this one was brought back from there.
-    """
+    """Give how far this library is on the server, None: not at all; raises LibraryError for another or moved."""
     with source.reading() as session:
         own = session.get_one(SettingRow, ID_SETTING).value
     with server.reading() as session:
-        row, state = session.get(SettingRow, ID_SETTING), state_of(session)
-    if row is None:
+        there, state = SettingRow.of(session, ID_SETTING), state_of(session)
+    if there is None:
         return None
-    if row.value != own:
+    if there != own:
         raise LibraryError(
             "The clinic's server already holds another library", "Use a separate database for this library"
         )
@@ -297,16 +244,13 @@ def _put_later_entries(source: Database, server: Database) -> None:
 def _make_folder(opened: OpenedLibrary, store: JournalStore, folder: Path, report: Report, *, is_copy: bool) -> Moved:
     server = opened.library.database
     (folder / RECORDINGS).mkdir(mode=0o700)
-    target = Database(sqlite_engine(folder / DATABASE, opened.data_key))
-    try:
+    with closing(Database(sqlite_engine(folder / DATABASE, opened.data_key))) as target:
         bring_up_to_date(target)
         kept = _take_rows(server, target)
         size = _fetch_journals(kept, store, folder, report)
         if not is_copy:  # else the server goes on changing
             _refuse_difference(server, target, "Try again")
         moved = _counted(target, len(kept), size)
-    finally:
-        target.close()
     with server.reading() as session:
         slots = session.get_one(SettingRow, SLOTS_SETTING).value
     replace_file(folder / KEYS, json.dumps(slots, indent=1).encode())
@@ -323,13 +267,7 @@ def _take_rows(server: Database, target: Database) -> dict[str, str]:
 
 
 def _refuse_waiting(session: OrmSession) -> None:
-    """See that nothing is being recorded, or waits at a station to be handed over.
-
-    Raises
-    ------
-    LibraryError
-        Something is or does.
-    """
+    """Raise LibraryError where a recording goes on or waits at a station to be handed over."""
     waiting = session.scalar(
         select(func.count())
         .select_from(RecordingRow)
@@ -360,13 +298,7 @@ def _fetch_journals(kept: Mapping[str, str], store: JournalStore, folder: Path, 
 
 
 def _refuse_difference(one: Database, other: Database, remedy: str) -> None:
-    """See that both hold the same.
-
-    Raises
-    ------
-    LibraryError
-        They do not.
-    """
+    """Raise LibraryError with this remedy where the two databases differ."""
     if tables := differing_tables(one, other):
         what = tr("The copy of the library does not match the original. These tables differ: {tables}").format(
             tables=", ".join(tables)

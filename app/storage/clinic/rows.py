@@ -50,13 +50,7 @@ def differing_tables(one: Database, other: Database) -> tuple[str, ...]:
 
 
 def refuse_nul(database: Database) -> None:
-    """See that all text can go to a server, which takes every character but one.
-
-    Raises
-    ------
-    LibraryError
-        Some has that one.
-    """
+    """Raise LibraryError where text has a NUL, the one character a server refuses."""
     with database.reading() as session:
         for table in Base.metadata.sorted_tables:
             for row in chain.from_iterable(_batches(session.connection(), table)):

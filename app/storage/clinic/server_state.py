@@ -30,45 +30,26 @@ def state_of(session: OrmSession) -> ServerState | None:
 
 
 def set_state(session: OrmSession, state: ServerState) -> None:
-    row = session.get(SettingRow, STATE_SETTING)
-    if row is None:
-        session.add(SettingRow(name=STATE_SETTING, value=state.value))
-    else:
-        row.value = state.value
+    SettingRow.put(session, STATE_SETTING, state.value)
 
 
 def close_for(session: OrmSession, target: str) -> None:
-    """Close the library on the server, which goes to `target`.
-
-    Raises
-    ------
-    LibraryError
-        It went, or is going, to another place already.
-    """
-    row = session.get(SettingRow, TARGET_SETTING)
-    if row is None:
-        session.add(SettingRow(name=TARGET_SETTING, value=target))
-    elif state_of(session) is ServerState.CLOSED and row.value != target:
+    """Close the library on the server, which goes to `target`; raises LibraryError if bound elsewhere."""
+    before = SettingRow.of(session, TARGET_SETTING, target)
+    if state_of(session) is ServerState.CLOSED and before != target:
         raise LibraryError(
             tr("The library was or is being moved back to another folder: {folder}").format(
-                folder=str(row.value).partition(" ")[2]
+                folder=str(before).partition(" ")[2]
             ),
             "Use the library in that folder. If nobody uses that folder, first reopen the server: "
             "gaitwright clinic back --give-up",
         )
-    else:
-        row.value = target
+    SettingRow.put(session, TARGET_SETTING, target)
     set_state(session, ServerState.CLOSED)
 
 
 def refuse_closed(session: OrmSession) -> None:
-    """See that the library on the server is the one to be worked with.
-
-    Raises
-    ------
-    LibraryFaultError
-        It is not; what is being recorded goes on without its row, and waits here.
-    """
+    """Raise LibraryFaultError where the server's library is closed; recordings then wait here."""
     found = state_of(session)
     if found is ServerState.OPEN:
         return

@@ -31,17 +31,7 @@ class SharedJournals:
         return JournalStore(self.place)
 
     def path(self, journal: StoredJournal) -> Path:
-        """A journal that is not in the station's own folder, fetched if need be.
-
-        Raises
-        ------
-        JournalRefusedError
-            It is not in the shared place yet, nor here; or what is there is not this segment of this recording.
-        LibraryError
-            The shared place does not answer, or does not have it.
-        OSError
-            The station's disk does not take it.
-        """
+        """Give a journal's path, fetched if need be; raises JournalRefusedError, LibraryError or OSError."""
         path = self.cache / journal.file
         if path.exists() and journal.kept_as in ("", name_in_place(path)):
             os.utime(path)  # it was used now
@@ -64,43 +54,18 @@ class SharedJournals:
         header.key(self._data_key, journal.file)
 
     def destroy(self, journal: StoredJournal) -> None:
-        """Remove a journal from the shared place, and the copy of it here; other stations' go when they start.
-
-        Raises
-        ------
-        LibraryError
-            The shared place does not answer.
-        OSError
-            The copy cannot be removed.
-        """
+        """Remove a journal from the shared place and its copy here; raises LibraryError or OSError."""
         if journal.kept_as:
             self.store.destroy(journal.kept_as)
         destroy_copy(self.cache / journal.file)
 
     def take(self, path: Path) -> None:
-        """Make a station's own file, which was handed over, a copy that may go.
-
-        Raises
-        ------
-        OSError
-            It cannot be moved.
-        """
+        """Turn a handed-over file of the station into a removable copy; raises OSError."""
         self.cache.mkdir(mode=0o700, exist_ok=True)
         path.replace(self.cache / path.name)
 
     def tidy(self, known: Collection[str], most_bytes: int = CACHED_BYTES) -> None:
-        """Remove copies of journals that were destroyed, and of the rest those that were not used for longest.
-
-        Parameters
-        ----------
-        known
-            Files whose recordings are still there to be read.
-
-        Raises
-        ------
-        OSError
-            A copy cannot be removed.
-        """
+        """Remove copies of journals not in `known` (destroyed), then those unused for longest; raises OSError."""
         used: Mapping[Path, os.stat_result] = {path: path.stat() for path in self.cache.glob(f"*{SUFFIX}")}
         room = most_bytes
         for path in sorted(used, key=lambda path: used[path].st_mtime, reverse=True):

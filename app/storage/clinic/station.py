@@ -30,18 +30,12 @@ DRIVER = "postgresql+psycopg"
 class Station:
     """One station of a clinic.
 
-    Attributes
-    ----------
-    id
-        Which station it is; drawn once.
-    database
-        The server's address, `postgresql://USER@HOST/DATABASE`. A password is better kept in the user's file of
-        passwords (`~/.pgpass`), which the driver reads.
-    journals
-        The shared place of the journals, where it has another name here than at the others; else empty.
+    `database`: the server's address, `postgresql://USER@HOST/DATABASE`. A password is better kept in the user's file of
+    passwords (`~/.pgpass`), which the driver reads.
+    `journals`: the shared place of the journals, where it has another name here than at the others; else empty.
     """
 
-    id: str
+    id: str  # which station it is; drawn once
     database: str = field(repr=False)
     journals: str = ""
 
@@ -50,36 +44,16 @@ class Station:
         return Database(postgres_engine(driver_url(self.database)))
 
     def database_once(self) -> Database:
-        """The clinic's database, for one step: no connection is kept.
-
-        Raises
-        ------
-        LibraryError
-            The address is none of a PostgreSQL server.
-        """
+        """Give the clinic's database for one step, no connection kept; raises LibraryError."""
         return Database(postgres_engine(driver_url(self.database), is_kept=False))
 
     def write(self, folder: Path) -> None:
-        """Make `folder` this station's.
-
-        Raises
-        ------
-        OSError
-            It cannot be written.
-        """
+        """Make `folder` this station's; raises OSError."""
         replace_file(folder / STATION, json.dumps({"format": FORMAT, **asdict(self)}, indent=1).encode())
 
 
 def station_of(folder: Path) -> Station | None:
-    """The station whose folder it is; None where the library is in the folder itself.
-
-    Raises
-    ------
-    LibraryError
-        Its file is damaged.
-    OSError
-        It cannot be read.
-    """
+    """Give the station of a folder, None: it holds the library itself; raises LibraryError (damaged), OSError."""
     try:
         reported = json.loads((folder / STATION).read_bytes())
         if reported["format"] != FORMAT:
@@ -99,13 +73,7 @@ def station_of(folder: Path) -> Station | None:
 
 
 def driver_url(address: str) -> str:
-    """The server's address as SQLAlchemy takes it.
-
-    Raises
-    ------
-    LibraryError
-        It is no address of a PostgreSQL server.
-    """
+    """Give the server's address for SQLAlchemy; raises LibraryError unless a PostgreSQL one."""
     try:
         url = make_url(address.strip())
     except ArgumentError:
@@ -116,13 +84,7 @@ def driver_url(address: str) -> str:
 
 
 def with_password(address: str, password: str) -> str:
-    """The server's address with a password that was typed beside it; without one, as it is.
-
-    Raises
-    ------
-    LibraryError
-        It is no address of a PostgreSQL server.
-    """
+    """Add a typed password, if any, to the server's address; raises LibraryError unless a PostgreSQL one."""
     url = make_url(driver_url(address)).set(drivername="postgresql")
     return (url.set(password=password) if password else url).render_as_string(hide_password=False)
 

@@ -97,13 +97,7 @@ class Database:
 
     @contextmanager
     def reading(self) -> Iterator[OrmSession]:
-        """A session that sees the database as it is at one instant.
-
-        Raises
-        ------
-        LibraryError
-            The database cannot be read.
-        """
+        """Give a session that sees one instant of the database; raises LibraryError."""
         try:
             with _reported(), OrmSession(self.engine) as session:
                 yield session
@@ -113,17 +107,7 @@ class Database:
 
     @contextmanager
     def writing(self) -> Iterator[OrmSession]:
-        """A session that holds the write lock from its beginning, and writes all or nothing at its end.
-
-        Raises
-        ------
-        LibraryBusyError
-            Somebody else holds the lock; it was tried for `busy_s`.
-        ChangedMeanwhileError
-            A row was changed since it was read.
-        LibraryError
-            The database cannot be written, or the library is gone.
-        """
+        """Hold the write lock, write all or nothing; raises LibraryBusyError, ChangedMeanwhileError."""
         self.guard()
         with _reported(), self._locked_session(self._write_engine) as session:
             yield session
@@ -131,11 +115,7 @@ class Database:
 
     @contextmanager
     def rebuilding(self) -> Iterator[Connection]:
-        """As `writing`, for work on the tables themselves.
-
-        SQLite alters a table by copying it and dropping the old one, and while references are enforced that would
-        delete what refers to it. So they are checked at the end instead.
-        """
+        """Like `writing`, to alter tables: SQLite copies and drops them, so references are checked at the end."""
         with _reported(), self._locked_session(self._build_engine) as session:
             yield session.connection()
             if self.engine.dialect.name == "sqlite" and (lost := _dangling(session)):
@@ -157,13 +137,7 @@ class Database:
                     raise
 
     def clock(self, now: Callable[[], datetime.datetime]) -> Callable[[], datetime.datetime]:
-        """Correct this computer's clock by the server's, which is read once.
-
-        Raises
-        ------
-        LibraryError
-            The server does not answer.
-        """
+        """Give `now` corrected by the server's clock, which is read once; raises LibraryError."""
         with self.reading() as session:
             ahead: datetime.timedelta = session.scalars(select(func.now())).one() - now()
         return lambda: now() + ahead
@@ -181,23 +155,12 @@ class Database:
             return tuple(found)
 
     def close(self) -> None:
-        self.engine.dispose()
-
-    def reconnect(self) -> None:
         """Let go of all connections: what is asked next opens the file that is there now."""
         self.engine.dispose()
 
 
 def sqlite_engine(path: Path, data_key: KeyMaterial | None, try_s: float = TRY_S, *, creates: bool = True) -> Engine:
-    """An engine on `path`, readable by its owner only. No `data_key`: not encrypted.
-
-    Not `creates`: where the file is missing nothing is made in its place.
-
-    Raises
-    ------
-    LibraryError
-        The SQLite that came with this installation loses pages.
-    """
+    """Open an owner-only engine; no `data_key`: unencrypted, not `creates`: no new file; raises LibraryError."""
     refuse_old_sqlite(sqlite.sqlite_version_info)
 
     def connect() -> sqlite.Connection:
@@ -218,16 +181,7 @@ def sqlite_engine(path: Path, data_key: KeyMaterial | None, try_s: float = TRY_S
 
 
 def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> Engine:
-    """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`.
-
-    A server reached over the network has to prove who it is, unless the URL states otherwise. Not `is_kept`: a
-    connection ends with its use.
-
-    Raises
-    ------
-    LibraryError
-        What speaks to a server is not installed.
-    """
+    """Open an engine (`postgresql+psycopg://...`), verified unless the URL opts out; raises LibraryError."""
     arguments: dict[str, object] = {"connect_timeout": max(2, round(try_s)), "client_encoding": "utf8", **PG_SILENT}
     asked = make_url(url)
     if asked.host and "sslmode" not in asked.query:
@@ -272,7 +226,7 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
 @cache
 def _impatient_connection() -> "type[PgConnection[Any]]":
     """A connection that is closed once the server has sent nothing for `PG_SILENT_S`."""
-    import psycopg
+    import psycopg  # an extra, of clinics
 
     class ImpatientConnection(psycopg.Connection[Any]):
         def wait(self, gen: Generator[Any, Any, Any], *args: Any, **options: Any) -> Any:
@@ -297,13 +251,7 @@ def _impatient_connection() -> "type[PgConnection[Any]]":
 
 
 def refuse_old_sqlite(version: tuple[int, ...]) -> None:
-    """See that SQLite keeps what it was given.
-
-    Raises
-    ------
-    LibraryError
-        It is older than `OLDEST_SQLITE`.
-    """
+    """Raise LibraryError where SQLite is older than `OLDEST_SQLITE` and may lose data."""
     if version < OLDEST_SQLITE:
         found, needed = (".".join(map(str, numbers)) for numbers in (version, OLDEST_SQLITE))
         raise LibraryError(

@@ -6,11 +6,7 @@ from uuid import UUID
 
 
 def uuid7(now_ns: int | None = None) -> UUID:
-    """Draw a UUIDv7 (RFC 9562, 5.7).
-
-    It holds milliseconds since 1970, their fraction in 12 bits (6.2, method 3) and 62 random bits. The standard
-    library has one from Python 3.14 on.
-    """
+    """Draw a UUIDv7 (RFC 9562, 5.7; fraction of ms in 12 bits: 6.2, method 3); Python has one from 3.14 on."""
     now_ns = time.time_ns() if now_ns is None else now_ns
     milliseconds, rest_ns = divmod(now_ns, 1_000_000)
     fraction = rest_ns * 4096 // 1_000_000

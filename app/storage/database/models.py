@@ -32,6 +32,7 @@ from sqlalchemy import (
 )
 from sqlalchemy.engine.default import DefaultExecutionContext
 from sqlalchemy.orm import DeclarativeBase, Mapped, declared_attr, mapped_column, relationship, validates
+from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.ids import uuid7
 from app.storage.layout import segment_name
@@ -357,6 +358,19 @@ class SettingRow(Versioned, Base):
 
     name: Mapped[str] = mapped_column(primary_key=True)
     value: Mapped[Any] = mapped_column(JSON)
+
+    @classmethod
+    def of(cls, session: OrmSession, name: str, default: Any = None) -> Any:
+        """What was set under this name."""
+        row = session.get(cls, name)
+        return default if row is None else row.value
+
+    @classmethod
+    def put(cls, session: OrmSession, name: str, value: Any) -> None:
+        if (row := session.get(cls, name)) is None:
+            session.add(cls(name=name, value=value))
+        else:
+            row.value = value
 
 
 class AuditRow(Base):

@@ -16,15 +16,7 @@ Sums = tuple[int, int]
 
 
 def is_end_lost(log: Path) -> bool:
-    """Return whether the write-ahead log holds saved changes that SQLite is going to drop.
-
-    A power cut amid a write may look like that too: then the changes had not been reported as saved.
-
-    Raises
-    ------
-    OSError
-        The log cannot be read.
-    """
+    """Give whether the log holds saved changes that SQLite will drop; a power cut may seem so; raises OSError."""
     try:
         content = log.read_bytes()
         while content[: HEADER.size] != (now := log.read_bytes())[: HEADER.size]:

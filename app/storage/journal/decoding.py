@@ -39,26 +39,16 @@ class JournalMark:
 class DecodedJournal:
     """Everything that a recording's segments hold.
 
-    Attributes
-    ----------
-    sensors
-        Samples and counts by the sensor's name. What lies between two segments was not recorded, so it is not lost.
-    sources
-        Every source, as it was described last.
-    undecoded
-        Those of them whose driver is not known here, or which no record describes any more.
-    dropped_records
-        Records that the disk was too slow for.
-    reports
-        One for each segment.
+    `sensors`: samples and counts by the sensor's name. What lies between two segments was not recorded, so it is not
+    lost.
     """
 
     sensors: Mapping[str, DecodedSensor]
     marks: tuple[JournalMark, ...]
-    sources: tuple[SourceInfo, ...]
-    undecoded: tuple[str, ...]
-    dropped_records: int
-    reports: tuple[ReadReport, ...]
+    sources: tuple[SourceInfo, ...]  # every source, as it was described last
+    undecoded: tuple[str, ...]  # those of them whose driver is not known here, or which no record describes any more
+    dropped_records: int  # records that the disk was too slow for
+    reports: tuple[ReadReport, ...]  # one for each segment
 
     @property
     def is_simulated(self) -> bool:
@@ -76,15 +66,7 @@ def decode(
     decoders: Decoders,
     wrapped_keys: Sequence[bytes | None] | None = None,
 ) -> DecodedJournal:
-    """Read a recording's segments, in order.
-
-    Raises
-    ------
-    JournalRefusedError
-        A segment is not a journal, or does not open with this key.
-    OSError
-        A file cannot be read.
-    """
+    """Read a recording's segments, in order; raises JournalRefusedError or OSError."""
     parts, offset_s = [], 0.0
     before: _JournalSegment | None = None
     for path, wrapped_key in zip(segments, wrapped_keys or [None] * len(segments), strict=True):
@@ -315,11 +297,7 @@ def _joined_unknown(name: str, blocks: Sequence[ImuBlock]) -> NDArray[np.generic
 
 
 def _opened_later_s(before: _JournalSegment, header: JournalHeader) -> float:
-    """How long after a segment the next one was opened.
-
-    By the monotonic clock, which nobody sets; where it restarted in between, with the machine, by the wall clock, but
-    never before the last record.
-    """
+    """Give how much later the next segment was opened: by the monotonic clock, after a restart the wall clock."""
     recorded_ns = before.last_ns - before.header.opened_ns
     passed_ns = header.opened_ns - before.header.opened_ns
     if passed_ns < recorded_ns:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from errno import EEXIST
 from pathlib import Path
 
-from app.storage.files import hold, replace_file, sync_folder
+from app.storage.files import hold, replace_file, replacing
 from app.storage.journal.header import JournalRefusedError
 from app.wording.translation import later, tr
 
@@ -71,29 +71,18 @@ REPORTED = {
 class Room:
     """How much of the disk has to be free.
 
-    Attributes
-    ----------
-    start_s, start_bytes
-        A recording begins only where there is room for so long and so much besides.
-    warn_s
-        Less than this left is reported.
-    kept_bytes
-        A recording stops, and is closed, before less than this is free: for the database, and for other programs.
+    `start_s`, `start_bytes`: a recording begins only where there is room for so long and so much besides.
+    `kept_bytes`: a recording stops, and is closed, before less than this is free: for the database, and for other
+    programs.
     """
 
     start_s: float = 600.0
     start_bytes: int = 500_000_000
-    warn_s: float = 300.0
+    warn_s: float = 300.0  # less than this left is reported
     kept_bytes: int = 100_000_000
 
     def check(self, folder: Path, bytes_per_s: float) -> None:
-        """Refuse to begin on a disk that is too full.
-
-        Raises
-        ------
-        JournalRefusedError
-            Less is free than `start_s` and `start_bytes` ask for, or the folder is not there.
-        """
+        """Raise JournalRefusedError where the folder is gone or lacks room for `start_s` and `start_bytes`."""
         needed = self.start_s * bytes_per_s + self.start_bytes
         try:
             free = shutil.disk_usage(folder).free
@@ -160,15 +149,10 @@ class JournalFile:
 
     def copy_to(self, path: Path) -> None:
         """Write all that the open file holds to `path`, which is then whole, or not there."""
-        beside = path.with_name(path.name + ".new")
         os.lseek(self._descriptor, 0, os.SEEK_SET)  # it appends all the same
-        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as to:
+        with replacing(path) as to:
             while piece := os.read(self._descriptor, PIECE_BYTES):
                 to.write(piece)
-            to.flush()
-            os.fsync(to.fileno())
-        beside.replace(path)
-        sync_folder(path.parent)
 
     def sha256(self) -> str:
         return self._sha256.hexdigest()

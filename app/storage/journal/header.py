@@ -85,13 +85,7 @@ class JournalHeader:
 
     @classmethod
     def parsed(cls, content: bytes, where: str, wrapped_key: bytes | None = None) -> "JournalHeader":
-        """Read a header; `wrapped_key`, from the library's own row, replaces one that is damaged.
-
-        Raises
-        ------
-        JournalRefusedError
-            Not a journal, of a later format, or damaged.
-        """
+        """Read a header; `wrapped_key`, from the row, replaces a damaged one; raises JournalRefusedError."""
         if content[: len(MAGIC)] != MAGIC or len(content) < HEADER_BYTES:
             raise JournalRefusedError(where, "this is not a Gaitwright recording, or its beginning is missing", RESTORE)
         _, version, flags, recording, segment, wall_ns, opened_ns = IDENTITY.unpack_from(content)
@@ -122,14 +116,7 @@ class JournalHeader:
         return replace(self, wrapped_key=wrapped)
 
     def key(self, data_key: KeyMaterial | None, where: str) -> bytes | None:
-        """This journal's own key; None where it has none.
-
-        Raises
-        ------
-        JournalRefusedError
-            The journal is sealed and `data_key` is missing or another library's, its key was destroyed, or it is not
-            sealed though the library is: somebody put it there.
-        """
+        """Give the journal's own key, None if unsealed; raises JournalRefusedError, also for a missing seal."""
         if not self.is_sealed and data_key is not None:
             raise JournalRefusedError(
                 where, "this recording is not encrypted, so it does not belong to this library", RESTORE
@@ -157,15 +144,7 @@ def _wrapping_key(data_key: KeyMaterial) -> bytes:
 
 
 def read_header(path: Path, wrapped_key: bytes | None = None) -> JournalHeader:
-    """A journal's header.
-
-    Raises
-    ------
-    JournalRefusedError
-        See `JournalHeader.parsed`.
-    OSError
-        The file cannot be read.
-    """
+    """Read a journal's header; raises JournalRefusedError or OSError."""
     with path.open("rb") as file:
         return JournalHeader.parsed(file.read(HEADER_BYTES), path.name, wrapped_key)
 
@@ -187,16 +166,8 @@ def find_segments(folder: Path) -> dict[UUID, dict[int, Path]]:
 
 
 def destroy_key(path: Path) -> None:
-    """Overwrite the wrapped key of a sealed journal, and with it all that the journal holds.
-
-    The row's copy, and backups, are the caller's. A disk that writes elsewhere (flash, snapshots) may keep the old one.
-
-    Raises
-    ------
-    JournalRefusedError
-        Not a journal, or not a sealed one.
-    OSError
-        The file cannot be written.
+    """Overwrite a sealed journal's wrapped key, not the row's copy; raises JournalRefusedError.
+    A disk that writes elsewhere (flash, snapshots), and backups, may keep the old one.
     """
     with path.open("r+b", buffering=0) as file:
         header = JournalHeader.parsed(file.read(HEADER_BYTES), path.name, NO_KEY)

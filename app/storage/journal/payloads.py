@@ -137,24 +137,12 @@ class Rows(NamedTuple):
 
 
 def layout_of(block: ImuBlock, rate_hz: float | None = None) -> SampleLayout:
-    """The columns that `block` has.
-
-    Raises
-    ------
-    ValueError
-        An unknown column bears the name of one of ours.
-    """
+    """Give the columns of `block`; raises ValueError where an unknown one has a known name."""
     return SampleLayout(*_columns_of(block), block.is_rate_derived, rate_hz)
 
 
 def rows_of(block: ImuBlock, layout: SampleLayout) -> tuple[FloatArray, list[list[str]]]:
-    """The block's samples as `layout` has them.
-
-    Raises
-    ------
-    ValueError
-        The block has other columns, or in another order.
-    """
+    """Give the block's samples as `layout` has them; raises ValueError for other columns or order."""
     columns, texts = _columns_of(block)
     if (columns, texts) != (layout.columns, layout.texts):
         raise ValueError("the block has other columns than its source's layout")  # which may be somebody's words

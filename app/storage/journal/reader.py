@@ -36,24 +36,14 @@ class Damage:
 
 @dataclass(slots=True)
 class ReadReport:
-    """What was found, complete once all records were read.
-
-    Attributes
-    ----------
-    missing_records
-        How many numbers are not there, of those before the last one that is.
-    footer
-        None where the journal was not stopped cleanly, or its end is lost.
-    sha256
-        Of the whole file, for its row.
-    """
+    """What was found, complete once all records were read."""
 
     records: int = 0
-    missing_records: int = 0
+    missing_records: int = 0  # how many numbers are not there, of those before the last one that is
     damaged_stretches: int = 0
     damaged_bytes: int = 0
-    footer: Footer | None = None
-    sha256: str = ""
+    footer: Footer | None = None  # None where the journal was not stopped cleanly, or its end is lost
+    sha256: str = ""  # of the whole file, for its row
 
     @property
     def is_whole(self) -> bool:
@@ -87,13 +77,7 @@ class JournalReader:
         self.report = ReadReport()
 
     def records(self) -> Iterator[Record | Damage]:
-        """All records in order, the footer being the last, and damaged stretches where they are.
-
-        Raises
-        ------
-        OSError
-            The file cannot be read on.
-        """
+        """Yield all records in order, the footer last, with damaged stretches in place; raises OSError."""
         report = self.report = ReadReport()
         with self._path.open("rb") as file:
             window = _Window(file)

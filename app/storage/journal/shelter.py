@@ -21,13 +21,7 @@ class Shelter:
     is_home: Callable[[], bool]
 
     def made(self) -> Path:
-        """The folder, made if need be: its owner's alone.
-
-        Raises
-        ------
-        OSError
-            This computer's disk does not take it.
-        """
+        """Make the shelter's folder, its owner's alone, if need be; raises OSError."""
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         return self.folder
 

@@ -53,21 +53,15 @@ class State(StrEnum):
 class JournalStatus:
     """How the journal is doing.
 
-    Attributes
-    ----------
-    stuck_s
-        For how long records have waited and none was written, while the process ran.
-    left_s
-        Until there is no more room.
-    written_s, synced_s
-        When the last record that was written, or is known to be on the disk, came, since the journal was opened.
+    `written_s`, `synced_s`: when the last record that was written, or is known to be on the disk, came, since the
+    journal was opened.
     """
 
     state: State
     records: int
     bytes: int
-    stuck_s: float
-    left_s: float
+    stuck_s: float  # for how long records have waited and none was written, while the process ran
+    left_s: float  # until there is no more room
     written_s: float
     synced_s: float
     dropped_records: int
@@ -153,27 +147,9 @@ class JournalWriter:
         shelter: Shelter | None = None,
         awake_s: Callable[[], float] = time.monotonic,
     ) -> Self:
-        """Open the next segment of a recording, under a key of its own.
-
-        Parameters
-        ----------
-        folder
-            It may be missing, but the folder that it is in may not: a library that is gone is not recreated.
-        data_key
-            The library's, to wrap the journal's key with; None for the demonstration's library: nothing is sealed.
-        bytes_per_s
-            What the sources are expected to send, for the question whether there is room.
-        shelter
-            None: where `folder` cannot be written any more, the recording ends.
-        awake_s
-            By what clock the disk is late: one that stops with the process blames no disk for it.
-
-        Raises
-        ------
-        JournalRefusedError
-            There is too little room.
-        OSError
-            The folder cannot be written, nor the shelter.
+        """Open the recording's next segment under its own key; raises JournalRefusedError (no room), OSError.
+        `folder` may be missing, not its parent; `data_key` None: unsealed; `shelter` None: may end early.
+        `bytes_per_s`: for the room; `awake_s`: a clock that stops with the process, to judge the disk by.
         """
         opened_wall_ns, opened_ns = wall_ns(), now_ns()
 
@@ -203,13 +179,7 @@ class JournalWriter:
         return cls(file, segment, bytes_per_s, room, on_trouble, inlet, shelter, following)
 
     def source(self, info: SourceInfo, layout: SampleLayout | None = None) -> int:
-        """Describe a source before its first byte; returns its number. `layout` for one that gives samples.
-
-        Raises
-        ------
-        ValueError, TypeError
-            The settings are more than JSON can hold.
-        """
+        """Describe a source before its first byte, with a `layout` if it gives samples; give its number."""
         return self._inlet.source(info, layout)
 
     def change(self, source: int, info: SourceInfo, layout: SampleLayout | None = None) -> None:
@@ -225,15 +195,7 @@ class JournalWriter:
         return self._stream(RecordKind.SENT, source, data)
 
     def samples(self, source: int, sensor: int, block: ImuBlock, *, waits: bool = False) -> bool:
-        """Keep samples of the source's sensor of that index; their times are seconds since the journal was opened.
-
-        `waits` is for imports, which no clock drives: rather than being dropped, samples wait for the disk.
-
-        Raises
-        ------
-        ValueError
-            The source gives no samples, has no such sensor, or the block's columns are not those of its layout.
-        """
+        """Keep samples of a source's sensor, times in seconds since opening; `waits` (imports): never drop."""
         entry = self._inlet.sources[source]
         if entry.layout is None or not 0 <= sensor < len(entry.info.sensors):
             raise ValueError(f"source {source} gives no samples of a sensor {sensor}")
@@ -391,10 +353,7 @@ class JournalWriter:
                 self._sources[entry.number] = replace(entry, dropped_records=0, dropped_bytes=0)
 
     def _end_segment(self) -> None:
-        """Close a file whose folder is gone from its place: under another name it most often is whole all the same.
-
-        One that was deleted is copied: a copy of the library, made before, lacks what was written since.
-        """
+        """Close a file whose folder is gone; if deleted, copy it, as a copy of the library lacks the latest."""
         assert self._shelter is not None  # else nobody looks where the library is
         try:
             self._append_footer(Trouble.MOVED)

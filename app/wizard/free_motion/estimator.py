@@ -28,32 +28,19 @@ CAUGHT_UP_S = 1.0  # of what was held back, taken in one update
 class FreeMotionView:
     """The free motion so far.
 
-    Attributes
-    ----------
-    motion
-        Empty as long as nobody knows who is where.
-    elapsed_s
-        Since the first sample, or since one leg alone began again.
-    repeated
-        The leg that is being repeated; the other's joints stay as they were.
-    detected
-        By the site that a sensor is stated to be at, the one where the motion puts it, in two looks that agree; empty
-        where it contradicts nothing.
-    site_of
-        By the sensor's name: as was stated, or as the motion has shown.
-    chains
-        What is known of the legs where the placement is left to the motion.
-    is_side_open
-        The legs are certain, and which is left is not: both began together, or there is only one. `name_leg` of
-        `UnplacedFreeMotionEstimator` settles it.
+    `detected`: by the site that a sensor is stated to be at, the one where the motion puts it, in two looks that agree;
+    empty where it contradicts nothing.
+    `site_of`: by the sensor's name: as was stated, or as the motion has shown.
+    `is_side_open`: the legs are certain, and which is left is not: both began together, or there is only one.
+    `name_leg` of `UnplacedFreeMotionEstimator` settles it.
     """
 
-    motion: FreeMotionState = field(default_factory=FreeMotionState)
-    elapsed_s: float = 0.0
-    repeated: Side | None = None
+    motion: FreeMotionState = field(default_factory=FreeMotionState)  # empty as long as nobody knows who is where
+    elapsed_s: float = 0.0  # since the first sample, or since one leg alone began again
+    repeated: Side | None = None  # the leg that is being repeated; the other's joints stay as they were
     detected: Mapping[Site, Site] = field(default_factory=dict)
     site_of: Mapping[str, Site] = field(default_factory=dict)
-    chains: Chains | None = None
+    chains: Chains | None = None  # what is known of the legs where the placement is left to the motion
     is_side_open: bool = False
 
 

@@ -67,10 +67,7 @@ def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[J
 
 
 def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> str:
-    """Say of which joints the motion is enough; an ankle counts by its centre, and one that is no hinge by its name.
-
-    How well a joint is known is the walk's verdict, not this one's: an ankle's axis is found while walking.
-    """
+    """State for which joints motion is enough: ankles count by their centre, non-hinges are named."""
     states = judged(motion, prosthetic_sides)
     if states and all(state in CLOSED for state in states.values()):
         return tr("enough movement")

@@ -9,10 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from PySide6.QtCore import QPointF, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtGui import QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction
 from app.widgets.body_figure import BodyFigure, SensorMark
@@ -20,8 +21,8 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
 from app.widgets.hip_gauge import HipFace, HipGauge
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
-from app.widgets.themed import Themed
 from app.wizard.free_motion.swap_banner import SwapBanner
 from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
 
@@ -58,19 +59,8 @@ class FreeMotionFace:
     moves_to: Mapping[Site, Site] = field(default_factory=dict)
 
 
-class FreeMotionPage(Themed):
-    """Its gauges are laid out like the patient who faces you; where there is little room, without the figure.
-
-    Signals
-    -------
-    answered
-        Number of the answer to what was asked.
-    pressed
-        The BarAction of the banner's button that was pressed.
-    """
-
-    answered = Signal(int)
-    pressed = Signal(object)
+class FreeMotionPage(QWidget):
+    """Its gauges are laid out like the patient who faces you; where there is little room, without the figure."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -90,15 +80,11 @@ class FreeMotionPage(Themed):
             self._grid.setColumnStretch(column, 1)
         for row in (0, 1):
             self._grid.setRowStretch(row, 1)
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self.question)
-        self._column.addWidget(self.band)
-        self._column.addWidget(self.swapped)
-        self._column.addLayout(self._hips)
-        self._column.addLayout(self._grid, 1)
-        self.question.answered.connect(self.answered)
-        self.swapped.pressed.connect(self.pressed)
-        self._apply_theme()
+        parts = (self.question, self.band, self.swapped, self._hips, (self._grid, 1))
+        self._column = lay_out(QVBoxLayout(self), *parts)
+        scaled(self._hips.setSpacing, 12)
+        scaled(self._grid.setVerticalSpacing, 12)
+        self.set_compact(False)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -127,14 +113,12 @@ class FreeMotionPage(Themed):
         for hip in self.hips.values():
             hip.set_compact(is_compact)
         self.figure.setVisible(not is_compact)
-        self._apply_theme()
-
-    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
-        """Say what the motion contradicts, or cannot show, and offer one or two answers; empty takes it back.
-
-        `is_understood`: it is no question but what was answered to one, and the second button takes that back.
-        """
-        self.question.ask(what, then, answers, is_understood=is_understood)
+        across, down = (16, 12) if is_compact else (24, 16)
+        scaled(self._column.setContentsMargins, across, down, across, down)
+        scaled(self._column.setSpacing, 12 if is_compact else 16)
+        scaled(self._grid.setHorizontalSpacing, 6 if is_compact else 0)
+        scaled(self._set_figure_width, 0 if is_compact else FIGURE_WIDTH)
+        self.update()
 
     def show_state(self, view: FreeMotionFace) -> None:
         """Show how far the motion has come; only what reads otherwise is painted again."""
@@ -187,41 +171,29 @@ class FreeMotionPage(Themed):
             self._hips.removeWidget(self.hips[hip_of(side)])
             self._hips.addWidget(self.hips[hip_of(side)])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        across, down = (16, 12) if self._is_compact else (24, 16)
-        self._column.setContentsMargins(px(across), px(down), px(across), px(down))
-        self._column.setSpacing(px(12 if self._is_compact else 16))
-        self._hips.setSpacing(px(12))
-        self._grid.setVerticalSpacing(px(12))
-        self._grid.setHorizontalSpacing(px(6) if self._is_compact else 0)
-        self._grid.setColumnMinimumWidth(1, 0 if self._is_compact else px(FIGURE_WIDTH))
-        self.update()
+    def _set_figure_width(self, width: int) -> None:
+        self._grid.setColumnMinimumWidth(1, width)
 
 
-class _Question(Themed):
+class _Question(QWidget):
     """What has to be answered by somebody who sees the patient; hidden while nothing has."""
 
-    answered = Signal(int)
+    answered = Signal(int)  # the answer's number
 
     def __init__(self) -> None:
         super().__init__()
-        self._is_understood = False
         self.notice = Notice(size=14)
         self.buttons = (
             Button("", ButtonKind.PRIMARY, height=44),
             Button("", ButtonKind.SECONDARY, height=44),
         )
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self.notice, 1)
+        lay_out(QHBoxLayout(self), (self.notice, 1), *self.buttons, margins=(6, 6, 10, 6), spacing=12)
         for button in self.buttons:
-            self._row.addWidget(button)
-        self.buttons[0].clicked.connect(self._on_first_clicked)
-        self.buttons[1].clicked.connect(self._on_second_clicked)
-        self._apply_theme()
+            button.clicked.connect(self._on_clicked)
         self.hide()
 
-    def ask(self, what: str, then: str, answers: tuple[str, ...], *, is_understood: bool) -> None:
+    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
+        """Show what the motion contradicts with up to two answers, or an answer with its undo; empty: hide."""
         offered = dict(enumerate(answers, start=int(is_understood)))
         for number, button in enumerate(self.buttons):
             button.setVisible(number in offered)
@@ -230,27 +202,8 @@ class _Question(Themed):
                 button.setAccessibleName(offered[number])
                 button.updateGeometry()
         self.setVisible(bool(what))
-        self._is_understood = is_understood
+        set_ground(self, Ground("surface", "control") if is_understood else Ground("caution", "caution_edge"))
         self.notice.show_message(Icon.CHECK if is_understood else Icon.WARNING, what, then)
-        self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        colours = theme.colours
-        painter.setPen(theme.pen(colours.control if self._is_understood else colours.caution_edge, 1))
-        painter.setBrush(QColor(colours.surface if self._is_understood else colours.caution))
-        radius = theme.px(8)
-        painter.drawRoundedRect(self.rect().adjusted(0, 0, -1, -1), radius, radius)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(6), px(6), px(10), px(6))
-        self._row.setSpacing(px(12))
-
-    def _on_first_clicked(self) -> None:
-        self.answered.emit(0)
-
-    def _on_second_clicked(self) -> None:
-        self.answered.emit(1)
+    def _on_clicked(self) -> None:
+        self.answered.emit(int(self.sender() is self.buttons[1]))

@@ -17,12 +17,8 @@ SILENT: Words = "", "", ()
 class SideQuestion:
     """Asks which leg wears a sensor, while both began together or one alone wears sensors.
 
-    Attributes
-    ----------
-    asked
-        The sensor that is asked about; None while none is.
-    reported
-        The sensor and the side that were understood; None before, and once that is undone.
+    `asked`: the sensor that is asked about; None while none is.
+    `reported`: the sensor and the side that were understood; None before, and once that is undone.
     """
 
     def __init__(self) -> None:

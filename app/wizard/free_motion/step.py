@@ -4,7 +4,7 @@ from dataclasses import replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QTimer, Slot
+from PySide6.QtCore import QObject, QTimer
 
 from app.acquisition.live_sensors import live_sensors
 from app.editing.session_recording import SessionRecording
@@ -29,12 +29,12 @@ from app.wizard.free_motion.hints import (
     recorded_hint,
     unplaced_hint,
 )
-from app.wizard.free_motion.label_questions import LabelQuestions
 from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_marks
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage, Swapped
-from app.wizard.free_motion.side_question import SILENT
+from app.wizard.free_motion.side_question import SILENT, SideQuestion
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.step import Step, StepId
+from app.wizard.worn_corrections import opposite
 from app.wording.translation import tr
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
@@ -42,6 +42,7 @@ from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
+    from core.placement.chains import Chains
 
 SETTLED_MS = 2000  # enough motion: time to see it, and to say otherwise
 TICKS = 3  # of 30 Hz: ten looks a second
@@ -86,10 +87,8 @@ class FreeMotionStep(Step):
         self._plays_to_s = 0.0
         self._then = AfterRecording.ITSELF
         self._is_in_sight = False
-        self.labels = LabelQuestions(visit, self)
-        self.labels.changed.connect(self._show_question)
-        self.labels.relabelled.connect(self._on_relabelled)
-        self.labels.leg_named.connect(self._on_leg_named)
+        self.question = SideQuestion()
+        self._sides_reported: dict[str, Side] = {}  # in this visit, by the sensor's name
         self._asked_words = SILENT
         self._ticks = 0
         self._settled = QTimer(self)
@@ -104,8 +103,7 @@ class FreeMotionStep(Step):
     def page(self) -> FreeMotionPage:
         if self._page is None:
             self._page = FreeMotionPage()
-            self._page.answered.connect(self.labels.answer)
-            self._page.pressed.connect(self._on_pressed)
+            self._page.question.answered.connect(self._answer)
         return self._page
 
     @property
@@ -115,7 +113,7 @@ class FreeMotionStep(Step):
     @property
     def note(self) -> str:
         joints = self._motion.joints
-        if self.labels.is_in_doubt:
+        if self.is_in_doubt:
             return tr("positions look swapped")
         if not self._has_moved:
             return ""
@@ -125,7 +123,7 @@ class FreeMotionStep(Step):
 
     @property
     def state(self) -> StepState:
-        if self.labels.is_in_doubt:
+        if self.is_in_doubt:
             return StepState.ATTENTION
         if not self._has_moved:
             return StepState.TODO
@@ -181,7 +179,7 @@ class FreeMotionStep(Step):
         left = BarAction(tr("Repeat left"), self._repeat_left, "L", Icon.REPEAT)
         right = BarAction(tr("Repeat right"), self._repeat_right, "R", Icon.REPEAT)
         repeat = tuple(left if side is Side.LEFT else right for side in self._repeatable)
-        if self.labels.is_in_doubt:
+        if self.is_in_doubt:
             return BarState(
                 primary=BarAction(tr("Continue to walking"), self.done.emit, icon=Icon.NEXT, is_enabled=False),
                 quiet=(stop if self._is_recording else again,),
@@ -215,8 +213,8 @@ class FreeMotionStep(Step):
             worn, is_walking = self._visit.worn, self._visit.recordings.is_recording
             (worn.place_once_ended if is_walking else worn.place_as_stated_now)()
             self._visit.sensors.doubt(self._doubt_before)
-        elif self._is_recording and self.labels.is_understood:
-            self.labels.answer(1)
+        elif self._is_recording and self.question.reported is not None:
+            self._answer(1)
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.RUN:
@@ -289,7 +287,8 @@ class FreeMotionStep(Step):
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
         self._then, self._again_side, self._worn_before = AfterRecording.ITSELF, None, {}
-        self.labels.begin()
+        self.question = SideQuestion()
+        self._visit.sensors.doubt({})
         self._enough = self._with_enough()
         if side is not None:
             self._visit.place_sensors(only=side)
@@ -317,7 +316,7 @@ class FreeMotionStep(Step):
             self._estimator = self._unplaced = UnplacedFreeMotionEstimator(
                 live, Side.LEFT, prosthetic, without, standing
             )
-            self._unplaced.name_leg(self.labels.named)
+            self._unplaced.name_leg(self.question.reported)
         else:
             self._unplaced = None
             site_of = {
@@ -335,21 +334,19 @@ class FreeMotionStep(Step):
         if view.site_of and not sensors.site_of:  # the motion has shown it
             sensors.assign_all(view.site_of)
             self._visit.worn.place_once_ended()
-            self.labels.withdraw()
+            self.question.withdraw()
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
         if sensors.site_of:
             self._seen_at = dict(sensors.site_of)
             sensors.doubt(view.detected)
         else:
-            self.labels.ask_for_side(view.chains if view.is_side_open else None)
+            self.ask_for_side(view.chains if view.is_side_open else None)
         enough = self._with_enough() | {joint for joint, hip in self._motion.hips.items() if hip.is_sure}
         if enough - self._enough:
             sounds.play(Sound.READY)
         self._enough = enough
-        is_whole = (
-            self._is_done and all(one.is_closed for one in self._motion.joints.values()) and not self.labels.is_in_doubt
-        )
+        is_whole = self._is_done and all(one.is_closed for one in self._motion.joints.values()) and not self.is_in_doubt
         if is_whole and not self._settled.isActive():
             self._settled.start()
         elif not is_whole:
@@ -435,23 +432,44 @@ class FreeMotionStep(Step):
 
     # what somebody has to answer
 
-    @Slot()
+    @property
+    def is_in_doubt(self) -> bool:
+        """Whether labels are contradicted, and nobody has answered yet."""
+        return bool(self._visit.sensors.detected)
+
+    def ask_for_side(self, chains: "Chains | None") -> None:
+        """The motion does not distinguish left from right: both legs began together, or one alone wears sensors."""
+        if chains is not None:
+            session = self._visit.session
+            placed = session.placements[-1].site_of if session is not None and session.placements else {}
+            earlier = {name: site.side for name, site in placed.items() if site.side is not None}
+            self.question.look(chains, earlier | self._sides_reported)
+            self._show_question()
+
     def _show_question(self) -> None:
         """Show what is to be answered, or what was understood; the page is left alone where that is shown already."""
-        words = self.labels.words if self._is_recording and not self.labels.is_in_doubt else SILENT
+        words = self.question.words if self._is_recording and not self.is_in_doubt else SILENT
         if words != self._asked_words:
             self._asked_words = words
-            self.page.ask(*words, is_understood=self.labels.is_understood)
+            self.page.question.ask(*words, is_understood=self.question.reported is not None)
 
-    @Slot()
+    def _answer(self, number: int) -> None:
+        """Let the motion be that of the leg that was named; what was placed already changes legs."""
+        self.question.answer(number)
+        reported, worn = self.question.reported, self._visit.sensors.site_of
+        if reported is not None:
+            self._sides_reported[reported[0]] = reported[1]
+        if not worn:
+            if self._unplaced is not None:
+                self._unplaced.name_leg(reported)
+        elif reported is not None and reported[0] in worn and worn[reported[0]].side is not reported[1]:
+            self._visit.sensors.assign_all({name: opposite(site) for name, site in worn.items()})
+            self._on_relabelled()
+        self._show_question()
+
     def _on_relabelled(self) -> None:
         self._visit.worn.place_once_ended()
         self._watch()  # what the motion gave was of other sensors
-
-    @Slot()
-    def _on_leg_named(self) -> None:
-        if self._unplaced is not None:
-            self._unplaced.name_leg(self.labels.named)
 
     def _check_positions(self) -> None:
         self.jumped.emit(StepId.SENSORS)
@@ -507,16 +525,13 @@ class FreeMotionStep(Step):
 
     @property
     def _swapped(self) -> Swapped | None:
-        if not self.labels.is_in_doubt:
+        if not self.is_in_doubt:
             return None
         return Swapped(*self._visit.sensors.doubt_in_words(), self._use_action, self._check_action)
 
-    def _on_pressed(self, action: BarAction) -> None:
-        action.run()
-
     def _asked(self) -> Asked:
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
-        if self.labels.is_in_doubt:
+        if self.is_in_doubt:
             return Asked(Hint("", phrase="swapped"))  # the banner is in its place
         if not self._is_recording:
             prosthetic = self._visit.prosthetic_sides
@@ -556,7 +571,7 @@ class FreeMotionStep(Step):
             if self._is_unplaced:
                 then = tr("Move each leg for longer, or assign the sensors by hand.")
                 self.reported.emit(tr("Sensor positions could not be detected."), then)
-            elif not self.labels.is_in_doubt:
+            elif not self.is_in_doubt:
                 self.done.emit()
         if self._left[0]:  # over the step that came next
             self.reported.emit(*self._left)

@@ -1,25 +1,26 @@
 """Banner in the place of the hint while sensors move like those of other places, with its two ways on."""
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Signal
+from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
     QColor,
     QFontMetrics,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import CARD_RADIUS
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import height_for
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 
 HEIGHT, COMPACT_HEIGHT = 120, 96
 MARK, COMPACT_MARK = 64, 40
@@ -28,41 +29,27 @@ BUTTONS = 324
 STACKED_BELOW = 620  # px of the design: the buttons stand below the words
 
 
-class SwapBanner(Themed):
-    """Hidden until sensors look swapped.
-
-    Signals
-    -------
-    pressed
-        The BarAction of the button that was pressed.
-    """
+class SwapBanner(Painted):
+    """Hidden until sensors look swapped."""
 
     accessible_role = QAccessible.Role.AlertMessage
-
-    pressed = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
         self._is_compact = False
+        set_ground(self, Ground("caution", "caution_edge", radius=CARD_RADIUS))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
         self._what = Text(size=SENTENCES[0], weight=SEMIBOLD, tone="caution_ink", wraps=True)
         self._then = Text(size=15, tone="caution_ink", wraps=True)
         self.use = VerbButton(self, is_primary=True)
         self.check = VerbButton(self)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addStretch(1)
-        words.addWidget(self._what)
-        words.addWidget(self._then)
-        words.addStretch(1)
-        self._beside = QVBoxLayout()
+        words = lay_out(QVBoxLayout(), 1, self._what, self._then, 1, spacing=0)
+        self._beside = lay_out(QVBoxLayout(), *self.buttons)
         for button in (self.use, self.check):
-            self._beside.addWidget(button)
             button.clicked.connect(self._on_clicked)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(words, 1)
-        self._row.addLayout(self._beside)
-        self._apply_theme()
+        self._row = lay_out(QHBoxLayout(self), (words, 1), self._beside, spacing=12)
+        on_theme(self._fit_sentence)
+        self.set_compact(False)
         self.hide()
 
     @property
@@ -90,7 +77,14 @@ class SwapBanner(Themed):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._apply_theme()
+        self._then.set_size(14 if is_compact else 15)
+        left, down = self._inset + self._mark + (16 if is_compact else 20), 6 if is_compact else 10
+        scaled(self._row.setContentsMargins, left, down, 16 if is_compact else 24, down)
+        scaled(self._beside.setSpacing, 0.4 if is_compact else 4)  # the former is one px at every size
+        scaled(self.use.setMinimumWidth, 0 if is_compact else BUTTONS)
+        self._fit_sentence()
+        self.updateGeometry()
+        self.update()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -100,14 +94,11 @@ class SwapBanner(Themed):
 
     def minimumSizeHint(self) -> QSize:
         hint = super().minimumSizeHint()
-        return QSize(hint.width(), max(hint.height(), px(self._height)))
+        return QSize(hint.width(), max(hint.height(), px(COMPACT_HEIGHT if self._is_compact else HEIGHT)))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        theme.paint_box(painter, box, c.caution, c.caution_edge, 1, CARD_RADIUS)
         mark = self._mark * theme.scale
         centre = QPointF(px(self._inset) + mark / 2, self.height() / 2)
         if self._row.direction() is QBoxLayout.Direction.TopToBottom:
@@ -118,10 +109,6 @@ class SwapBanner(Themed):
         side = mark * 0.5
         icon = QRectF(centre.x() - side / 2, centre.y() - side / 2, side, side)
         paint_icon(painter, Icon.SWAP, icon, c.caution_mark_ink)
-
-    @property
-    def _height(self) -> int:
-        return COMPACT_HEIGHT if self._is_compact else HEIGHT
 
     @property
     def _mark(self) -> int:
@@ -146,17 +133,4 @@ class SwapBanner(Themed):
     def _on_clicked(self) -> None:
         button = self.sender()
         assert isinstance(button, VerbButton)
-        self.pressed.emit(button.verb)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._then.set_size(14 if self._is_compact else 15)
-        left = self._inset + self._mark + (16 if self._is_compact else 20)
-        down = 6 if self._is_compact else 10
-        self._row.setContentsMargins(px(left), px(down), px(16 if self._is_compact else 24), px(down))
-        self._row.setSpacing(px(12))
-        self._beside.setSpacing(px(0 if self._is_compact else 4))
-        self.use.setMinimumWidth(0 if self._is_compact else px(BUTTONS))
-        self._fit_sentence()
-        self.updateGeometry()
-        self.update()
+        button.verb.run()

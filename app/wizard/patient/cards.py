@@ -2,16 +2,18 @@
 
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPolygonF
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import figure_text, tr
 from core.verdicts.norms import ReferenceCurves
@@ -31,20 +33,16 @@ class BandCard(Card):
     """The group that the patient's curves will lie on, and whether the patient is like them."""
 
     def __init__(self, curves: ReferenceCurves) -> None:
-        self._advice = QHBoxLayout()
         super().__init__(padding=20, spacing=6)
         self._ages_years = curves.ages_years
         group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
             n=curves.n, speed=figure_text(curves.speed_m_s, ".2f")
         )
-        self._mark = IconMark(Icon.INFO)
         self._words = Text(size=14, wraps=True)
-        self._advice.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._advice.addWidget(self._words, 1)
-        self.column.addWidget(Text(tr("Reference"), size=16, weight=SEMIBOLD))
-        self.column.addWidget(Text(group, size=14, wraps=True))
-        self.column.addWidget(_BandDrawing(curves))
-        self.column.addLayout(self._advice)
+        mark = (IconMark(Icon.INFO), 0, Qt.AlignmentFlag.AlignTop)
+        advice = lay_out(QHBoxLayout(), mark, (self._words, 1), spacing=10)
+        title = Text(tr("Reference"), size=16, weight=SEMIBOLD)
+        lay_out(self.column, title, Text(group, size=14, wraps=True), _BandDrawing(curves), advice)
 
     def judge(self, age: int | None) -> None:
         """Say whether a patient of `age` years is of the group's age."""
@@ -65,19 +63,16 @@ class BandCard(Card):
             )
         self._words.setText(words)
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._advice.setSpacing(px(10))
 
-
-class _BandDrawing(QWidget):
+class _BandDrawing(Painted):
     """The knee of the group over one stride: one and two standard deviations in two greys."""
 
     def __init__(self, curves: ReferenceCurves) -> None:
         super().__init__()
         self._curves = curves
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.setAccessibleName(self._title())
+        scaled(self.setFixedHeight, DRAWING_HEIGHT)
+        scaled(self.setMinimumWidth, 200)
+        self.setAccessibleName(_title())
         peak = int(curves.knee_mean_deg.argmax())
         self.setAccessibleDescription(
             tr("Peak {angle}° at {percent} % of the gait cycle").format(
@@ -85,18 +80,9 @@ class _BandDrawing(QWidget):
             )
         )
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(200), px(DRAWING_HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         mean, sd = self._curves.knee_mean_deg, self._curves.knee_sd_deg
         low, high = float((mean - 2 * sd).min()), float((mean + 2 * sd).max())
         room = QRectF(0, px(4), self.width(), self.height() - px(8))
@@ -117,10 +103,11 @@ class _BandDrawing(QWidget):
         painter.drawLine(at(0, 0.0), at(len(mean) - 1, 0.0))
         painter.setPen(QColor(c.ink2))
         painter.setFont(theme.font(12))
-        painter.drawText(0, 0, self.width(), px(16), Qt.AlignmentFlag.AlignLeft, self._title())
+        painter.drawText(0, 0, self.width(), px(16), Qt.AlignmentFlag.AlignLeft, _title())
 
-    def _title(self) -> str:
-        return tr("Knee, ±1 and ±2 SD")
+
+def _title() -> str:
+    return tr("Knee, ±1 and ±2 SD")
 
 
 class TakenCard(Card):
@@ -130,8 +117,7 @@ class TakenCard(Card):
         super().__init__(padding=20, spacing=12)
         self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self.open = Button(tr("Open this patient"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self.open)
+        lay_out(self.column, self._title, self.open)
 
     def show_code(self, code: str) -> None:
         self._title.setText(tr("{code} is in the library").format(code=code))
@@ -142,16 +128,15 @@ class LastVisitCard(Card):
     """What was worn and recorded last time, and the way to have the same again."""
 
     def __init__(self) -> None:
-        self._facts = QGridLayout()
         super().__init__(padding=20, spacing=10)
+        self._facts = QGridLayout()
+        scaled(self._facts.setHorizontalSpacing, 16)
+        scaled(self._facts.setVerticalSpacing, 8)
         self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self.same = Button(tr("Use last visit's set-up"), ButtonKind.SECONDARY, Icon.REPEAT)
         self._facts.setColumnStretch(1, 1)
         self._shown: list[Text] = []
-        self.column.addWidget(self._title)
-        self.column.addLayout(self._facts)
-        self.column.addStretch(1)
-        self.column.addWidget(self.same)
+        lay_out(self.column, self._title, self._facts, 1, self.same)
 
     def show_visit(self, visit: LastVisit) -> None:
         self._title.setText(visit.title)
@@ -160,18 +145,8 @@ class LastVisitCard(Card):
             text.deleteLater()
         self._shown = []
         for row, (label, value) in enumerate(visit.facts):
-            for column, text in enumerate(
-                (
-                    Text(label, size=14, tone="ink2"),
-                    Text(value, size=14, weight=MEDIUM, wraps=True),
-                )
-            ):
+            texts = Text(label, size=14, tone="ink2"), Text(value, size=14, weight=MEDIUM, wraps=True)
+            for column, text in enumerate(texts):
                 self._facts.addWidget(text, row, column, Qt.AlignmentFlag.AlignTop)
                 self._shown.append(text)
         hear_as_laid_out(self)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self._facts.setHorizontalSpacing(px(16))
-        self._facts.setVerticalSpacing(px(8))

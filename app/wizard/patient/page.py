@@ -6,26 +6,20 @@ Only the code is needed; the rest chooses the band and is printed.
 from dataclasses import dataclass, field, replace
 from datetime import date
 
-from PySide6.QtCore import QEvent, QObject, QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import (
-    QBoxLayout,
-    QFrame,
-    QHBoxLayout,
-    QScrollArea,
-    QSizePolicy,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.summary.reference_bands import reference_curves
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme
+from app.theme.ground import Ground, set_ground
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
 from app.wording.patients import AIDS
 from app.wording.translation import tr
@@ -50,25 +44,12 @@ class PatientDraft:
     without_ankle: frozenset[Side] = frozenset()
 
 
-class PatientPage(Themed):
-    """What was typed stays on the page, right or wrong.
+class PatientPage(QWidget):
+    """What was typed stays on the page, right or wrong."""
 
-    Signals
-    -------
-    edited
-        What is on the page, with every letter.
-    code_committed
-        The code has been typed to its end.
-    open_pressed
-        The patient whose code was typed is in the library: take that one.
-    same_set_up_pressed
-        As at the last visit, and on to the sensors.
-    """
-
-    edited = Signal(PatientDraft)
-    code_committed = Signal()
-    open_pressed = Signal(str)
-    same_set_up_pressed = Signal()
+    edited = Signal(PatientDraft)  # what is on the page, with every letter
+    open_pressed = Signal(str)  # the patient whose code was typed is in the library: take that one
+    same_set_up_pressed = Signal()  # as at the last visit, and on to the sensors
 
     def __init__(self, today: date | None = None) -> None:
         super().__init__()
@@ -76,13 +57,6 @@ class PatientPage(Themed):
         self._shown = PatientDraft()
         self._taken_code = ""
         self._is_compact = False
-        self._title = Text(tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
-        self._subtitle = Text(
-            tr("Only the code is required. The other entries select the reference and are printed."),
-            size=15,
-            tone="ink2",
-            wraps=True,
-        )
         self._saved = Text(size=14, tone="ink2")
         self.code = Field(tr("Patient code"), is_code=True, most=MOST_OF_CODE)
         self.sex = Segmented(
@@ -118,7 +92,7 @@ class PatientPage(Themed):
         self.show_draft(PatientDraft())
         self.show_last_visit(None)
         self._taken.hide()
-        self._apply_theme()
+        on_theme(self._fit)
 
     @property
     def draft(self) -> PatientDraft:
@@ -169,7 +143,7 @@ class PatientPage(Themed):
         """Lay the cards below one another where the window is small."""
         self._is_compact = is_compact
         self._cards.setDirection(_DOWN if is_compact else _ACROSS)
-        self._apply_theme()
+        self._fit()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -222,12 +196,12 @@ class PatientPage(Themed):
         self._fit()
 
     def _build(self) -> None:
+        how = tr("Only the code is required. The other entries select the reference and are printed.")
+        subtitle = Text(how, size=15, tone="ink2", wraps=True)
         self._limb_box = _Captioned(self.limb, tr("This side is"))
         ankles = QWidget()
-        self._ankle_row = QBoxLayout(_ACROSS, ankles)
-        self._ankle_row.setContentsMargins(0, 0, 0, 0)
-        for chips in self.ankles.values():
-            self._ankle_row.addWidget(chips, 1)
+        both = [(chips, 1) for chips in self.ankles.values()]
+        self._ankle_row = lay_out(QBoxLayout(_ACROSS, ankles), *both, margins=0, spacing=16)
         self._ankle_box = _Captioned(
             ankles,
             tr("Prosthetic foot"),
@@ -247,43 +221,24 @@ class PatientPage(Themed):
         ]
         for number, row in enumerate(self._rows):
             if number == 2:
-                self._form.column.addWidget(_FieldLine())
+                self._form.column.addWidget(_line())
             self._form.column.addLayout(row)
         self._form.column.addStretch(1)
         self._beside = QWidget()
-        self._beside_column = QVBoxLayout(self._beside)
-        self._beside_column.setContentsMargins(0, 0, 0, 0)
-        for card, stretch in ((self._taken, 0), (self._band, 0), (self._last, 1)):
-            self._beside_column.addWidget(card, stretch)
-        self._beside_column.addStretch(0)
-        self._cards = QBoxLayout(_ACROSS)
-        self._cards.addWidget(self._form, 1)
-        self._cards.addWidget(self._beside)
-        self._words = QHBoxLayout()
-        self._words.addWidget(self._subtitle, 1)
-        self._words.addWidget(self._saved, 0, Qt.AlignmentFlag.AlignBottom)
+        lay_out(QVBoxLayout(self._beside), self._taken, self._band, (self._last, 1), 0, margins=0, spacing=16)
+        self._cards = lay_out(QBoxLayout(_ACROSS), (self._form, 1), self._beside, spacing=16)
+        saved = (self._saved, 0, Qt.AlignmentFlag.AlignBottom)
+        words = lay_out(QHBoxLayout(), (subtitle, 1), saved, margins=(0, 0, 0, 12), spacing=16)
         content = QWidget()
-        self._column = QVBoxLayout(content)
-        self._column.addWidget(self._title)
-        self._column.addLayout(self._words)
-        self._column.addLayout(self._cards, 1)
-        self._column.addStretch(0)
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setWidget(content)
+        title = Text(tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
+        self._column = lay_out(QVBoxLayout(content), title, words, (self._cards, 1), 0, spacing=4)
+        self._scroll = scrolled(content)
         content.installEventFilter(self)
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(self._scroll)
+        lay_out(QVBoxLayout(self), self._scroll, margins=0)
 
     def _row(self, *widgets: QWidget) -> QBoxLayout:
-        row = QBoxLayout(_ACROSS)
-        for widget in widgets:
-            row.addWidget(widget, 1, Qt.AlignmentFlag.AlignTop)
-        return row
+        parts = [(widget, 1, Qt.AlignmentFlag.AlignTop) for widget in widgets]
+        return lay_out(QBoxLayout(_ACROSS), *parts, spacing=16)
 
     def _connect(self) -> None:
         for line in (self.code, self.birth_year, self.height_cm, self.mass_kg, self.device):
@@ -292,7 +247,6 @@ class PatientPage(Themed):
             segmented.chosen.connect(self._on_edited)
         for chips in (*self.ankles.values(), self.aids):
             chips.turned.connect(self._on_edited)
-        self.code.committed.connect(self.code_committed)
         self._taken.open.clicked.connect(self._on_open_clicked)
         self._last.same.clicked.connect(self.same_set_up_pressed)
 
@@ -339,20 +293,8 @@ class PatientPage(Themed):
     def _on_open_clicked(self) -> None:
         self.open_pressed.emit(self._taken_code)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(4))
-        self._words.setContentsMargins(0, 0, 0, px(12))
-        self._words.setSpacing(px(16))
-        self._cards.setSpacing(px(16))
-        self._beside_column.setSpacing(px(16))
-        self._ankle_row.setSpacing(px(16))
-        for row in self._rows:
-            row.setSpacing(px(16))
-        self._fit()
 
-
-class _Captioned(Themed):
+class _Captioned(QWidget):
     """A control under its label, as a field has it, with a few words at the label's right."""
 
     def __init__(self, content: QWidget, caption: str, note: str = "") -> None:
@@ -360,36 +302,19 @@ class _Captioned(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
         self._note = Text(note, size=12, tone="ink2", wraps=True)
         self._note.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom)
-        self._above = QHBoxLayout()
-        self._above.addWidget(Text(caption, size=14, weight=MEDIUM))
-        self._above.addWidget(self._note, 1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(self._above)
-        self._column.addWidget(content)
-        self._apply_theme()
+        above = lay_out(QHBoxLayout(), Text(caption, size=14, weight=MEDIUM), (self._note, 1), spacing=8)
+        lay_out(QVBoxLayout(self), above, content, margins=0, spacing=6)
 
     def set_note(self, note: str) -> None:
         self._note.setText(note)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(6))
-        self._above.setSpacing(px(8))
 
-
-class _FieldLine(QWidget):
+def _line() -> QWidget:
     """A hairline between what the session is about and what chooses the reference."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-
-    def sizeHint(self) -> QSize:
-        return QSize(0, 1)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.line))
+    line = QWidget()
+    line.setFixedHeight(1)
+    set_ground(line, Ground("line", radius=0, inset=0))
+    return line
 
 
 def _typed(line: NumberField, before: float | None) -> float | None:

@@ -53,7 +53,7 @@ class PatientStep(Step):
         if self._page is None:
             page = self._page = PatientPage()
             page.edited.connect(self._on_edited)
-            page.code_committed.connect(self._on_code_committed)
+            page.code.committed.connect(self._visit.patient.commit)
             page.open_pressed.connect(self._on_open_pressed)
             page.same_set_up_pressed.connect(self._on_same_set_up_pressed)
         return self._page
@@ -163,9 +163,6 @@ class PatientStep(Step):
         """Show what another station entered about the feet, so that nobody answers over what was not seen."""
         if self._is_entered and self._visit.without_ankle != self._shown_without:
             self._fill()
-
-    def _on_code_committed(self) -> None:
-        self._visit.patient.commit()
 
     def _on_patient_changed(self) -> None:
         self._taken_code = ""

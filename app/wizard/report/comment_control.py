@@ -11,15 +11,9 @@ if TYPE_CHECKING:
 
 
 class CommentControl(QObject):
-    """Shows the words of another station too, unless somebody types.
+    """Shows the words of another station too, unless somebody types."""
 
-    Signals
-    -------
-    changed
-        What is printed may be another comment.
-    """
-
-    changed = Signal()
+    changed = Signal()  # what is printed may be another comment
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)

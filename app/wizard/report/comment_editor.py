@@ -6,9 +6,10 @@ from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording.translation import tr
@@ -27,21 +28,11 @@ class CommentState(Enum):
 
 
 class CommentEditor(Themed):
-    """Shows words and what becomes of them.
+    """Shows words and what becomes of them."""
 
-    Signals
-    -------
-    edited
-        The words, once the typing pauses.
-    confirmed
-        The words as they are to be printed.
-    left
-        The words have been left by a key.
-    """
-
-    edited = Signal(str)
-    confirmed = Signal(str)
-    left = Signal()
+    edited = Signal(str)  # the words, once the typing pauses
+    confirmed = Signal(str)  # the words as they are to be printed
+    left = Signal()  # the words have been left by a key
 
     def __init__(self) -> None:
         super().__init__()
@@ -53,13 +44,10 @@ class CommentEditor(Themed):
         self.note = Text(size=13, tone="ink2", wraps=True)
         self.note.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.button = Button(tr("Confirm comment"), ButtonKind.SECONDARY, Icon.CHECK, tr("Ctrl Enter"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        for part in (
-            Text(tr("Clinical comment"), size=20, weight=SEMIBOLD), self.field, self.note, self.button,
-        ):  # fmt: skip
-            column.addWidget(part)
-        self._column = column
+        title = Text(tr("Clinical comment"), size=20, weight=SEMIBOLD)
+        lay_out(QVBoxLayout(self), title, self.field, self.note, self.button, margins=0, spacing=8)
+        scaled(self.field.setFixedHeight, HEIGHT)
+        scaled(self.note.setMinimumHeight, NOTE_HEIGHT)  # of two lines, so that nothing moves with the words
         self._pause = QTimer(self)
         self._pause.setSingleShot(True)
         self._pause.setInterval(REBUILT_AFTER_MS)
@@ -136,8 +124,4 @@ class CommentEditor(Themed):
         self.edited.emit(self.words)
 
     def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(8))
-        self.field.setFixedHeight(px(HEIGHT))
-        self.note.setMinimumHeight(px(NOTE_HEIGHT))  # of two lines, so that nothing moves with the words
         self.field.setFont(current_theme().font(14))

@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QPalette
-from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import ReadingArea
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import tr
@@ -70,25 +71,12 @@ class LeavingDialog(QDialog):
         ]
 
     def _build(self) -> None:
-        scroll = ReadingArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setAccessibleName(tr("Everything exported besides measured values"))
-        scroll.setWidget(self._table)
-        buttons = QHBoxLayout()
-        buttons.addStretch(1)
-        buttons.addWidget(self.cancel)
-        buttons.addWidget(self.go)
-        column = QVBoxLayout(self)
-        for part in (self._title, self._lead, self._also, self.typed):
-            column.addWidget(part)
-        column.addWidget(scroll, 1)
-        column.addLayout(buttons)
-        px, colours = current_theme().px, current_theme().colours
-        column.setContentsMargins(px(24), px(20), px(24), px(20))
-        column.setSpacing(px(12))
+        scroll = ReadingArea(self._table, tr("Everything exported besides measured values"))
+        buttons = lay_out(QHBoxLayout(), 1, self.cancel, self.go)
+        above = (self._title, self._lead, self._also, self.typed)
+        lay_out(QVBoxLayout(self), *above, (scroll, 1), buttons, margins=(24, 20, 24, 20), spacing=12)
         palette = self.palette()
-        palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
+        palette.setColor(QPalette.ColorRole.Window, QColor(current_theme().colours.surface))
         self.setPalette(palette)
 
     def _show(self) -> None:

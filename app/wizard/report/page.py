@@ -4,20 +4,21 @@ from collections.abc import Sequence
 from uuid import UUID
 
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sheets import Sheet, Sheets, SmallSheets
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wizard.report.comment_editor import CommentEditor
 from app.wording.translation import LANGUAGES, spoken_language, tr
 
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 WORDS_WIDTH = 320
 PADDING = 20
 NARROW_BELOW = 900
@@ -26,29 +27,17 @@ LETTER = "letter"  # among the files to export
 FIRST_CHOICE = ("csv", "rrd")
 
 
-class ReportPage(Themed):
-    """Shown pages as pictures.
+class ReportPage(QWidget):
+    """Shown pages as pictures."""
 
-    Signals
-    -------
-    options_changed
-        Another paper, another visit to compare with, or other files beside the report.
-    sharper_required
-        There is room for finer pictures of the pages than those shown.
-    """
-
-    options_changed = Signal()
-    sharper_required = Signal()
+    options_changed = Signal()  # another paper, another visit to compare with, or other files beside the report
+    sharper_required = Signal()  # there is room for finer pictures of the pages than those shown
 
     def __init__(self) -> None:
         super().__init__()
         self._is_narrow = False
         self.sheets, self.small = Sheets(), SmallSheets()
-        self.reading = ReadingArea()
-        self.reading.setFrameShape(QFrame.Shape.NoFrame)
-        self.reading.setWidgetResizable(True)
-        self.reading.setWidget(self.sheets)
-        self.reading.setAccessibleName(tr("Report pages"))
+        self.reading = ReadingArea(self.sheets, tr("Report pages"))
         self.editor = CommentEditor()
         self.comment = self.editor.field
         self.formats = Chips(
@@ -68,39 +57,26 @@ class ReportPage(Themed):
         self.earlier = Choice(tr("Compare with"))
         self.earlier.let_shrink(WORDS_WIDTH - 2 * PADDING, WORDS_WIDTH - 2 * PADDING)  # conditions are typed
         self.earlier.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)  # as wide as its card
-        self._earlier_title = Text(tr("Compare with"), size=16, weight=SEMIBOLD)
-        self._also = Text(tr("Files to export"), size=16, weight=SEMIBOLD)
-        self._sheet = Text(tr("Paper"), size=16, weight=SEMIBOLD)
+        self._earlier_title = _title(tr("Compare with"))
         self.added = Chips(tr("Extra pages"), [("course", tr("Progress so far"))])
         self.added.choose(("course",))
-        self._added_title = Text(tr("Extra pages"), size=16, weight=SEMIBOLD)
-        self._language_title = Text(tr("Patient letter"), size=16, weight=SEMIBOLD)
         languages = [(key, name, "") for key, name in LANGUAGES.items()]
         self.language = Segmented(tr("Language of the patient letter"), languages)
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
         self._card = Card(padding=PADDING, spacing=12)
-        above: list[QWidget] = [self.editor, self._earlier_title, self.earlier]
-        for part in above:
-            self._card.column.addWidget(part)
-        for title, control in (
-            (self._added_title, self.added),
-            (self._language_title, self.language),
-            (self._sheet, self.paper),
-        ):
-            row = QHBoxLayout()
-            row.addWidget(title, 1)
-            row.addWidget(control)
-            self._card.column.addLayout(row)
-        self._card.column.addWidget(self._also)
-        self._card.column.addWidget(self.formats)
-        self._card.column.addStretch(1)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._pages = QHBoxLayout()
-        self._pages.addWidget(self.small)
-        self._pages.addWidget(self.reading, 1)
-        self._row.addLayout(self._pages, 1)
-        self._row.addWidget(self._card)
+        rows = [
+            lay_out(QHBoxLayout(), (_title(title), 1), control)
+            for title, control in (
+                (tr("Extra pages"), self.added),
+                (tr("Patient letter"), self.language),
+                (tr("Paper"), self.paper),
+            )
+        ]
+        above, files = (self.editor, self._earlier_title, self.earlier), _title(tr("Files to export"))
+        lay_out(self._card.column, *above, *rows, files, self.formats, 1)
+        pages = lay_out(QHBoxLayout(), self.small, (self.reading, 1), spacing=8)
+        self._row = lay_out(QBoxLayout(ACROSS, self), (pages, 1), self._card, margins=(24, 16, 24, 16), spacing=16)
         self.editor.left.connect(self.focus)
         self.formats.turned.connect(self.options_changed)
         self.added.turned.connect(self.options_changed)
@@ -110,7 +86,7 @@ class ReportPage(Themed):
         self.earlier.activated.connect(self.options_changed)
         self.sheets.sharper_required.connect(self.sharper_required)
         self.show_visits([])
-        self._apply_theme()
+        on_theme(self._fit_card)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -125,8 +101,7 @@ class ReportPage(Themed):
     def set_room(self, width: float, _height: float) -> None:
         """Put the words under the pages where both do not stand side by side."""
         self._is_narrow = is_narrow = width < NARROW_BELOW
-        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
-        self._row.setDirection(way)
+        self._row.setDirection(DOWN if is_narrow else ACROSS)
         self.small.setVisible(not is_narrow)
         self.reading.setMinimumHeight(px(360) if is_narrow else 0)
         self._fit_card()
@@ -144,13 +119,8 @@ class ReportPage(Themed):
 
     def show_visits(self, visits: Sequence[tuple[UUID, str]]) -> None:
         """Offer earlier visits, each with its words, to be compared with; what was chosen stays."""
-        before = self.chosen_visit
-        self.earlier.clear()
-        self.earlier.addItem(tr("No earlier visit"))
-        for number, words in visits:
-            self.earlier.addItem(words, number)
-        self.earlier.setCurrentIndex(max(self.earlier.findData(before), 0) if before is not None else 0)
-        self.earlier.updateGeometry()
+        lines: list[tuple[str, object]] = [(tr("No earlier visit"), None)]
+        self.earlier.offer(lines + [(words, number) for number, words in visits], self.chosen_visit)
         for part in (self._earlier_title, self.earlier):
             part.setVisible(bool(visits))
 
@@ -182,9 +152,6 @@ class ReportPage(Themed):
         if begun and begun[-1] != self.small.number:
             self.small.mark(begun[-1])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(24), px(16), px(24), px(16))
-        self._row.setSpacing(px(16))
-        self._pages.setSpacing(px(8))
-        self._fit_card()
+
+def _title(words: str) -> Text:
+    return Text(words, size=16, weight=SEMIBOLD)

@@ -7,9 +7,6 @@ from PySide6.QtGui import QImage, QPageLayout, QPageSize, QPainter
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 from PySide6.QtWidgets import QWidget
 
-from app.storage.audit import LETTER_FORMAT
-from app.summary.request import ReportRequest
-
 PRINTED_PPI = 300.0
 PAGE_SIZES = {"a4": QPageSize.PageSizeId.A4, "letter": QPageSize.PageSizeId.Letter}
 
@@ -39,17 +36,6 @@ class ReportPrinter(QObject):
         """Put pages, each a PNG, on the printer that was chosen; whether it took them."""
         printer, self._printer = self._printer, None
         return printer is not None and paint_pages(printer, pages)
-
-
-def printed_pages(document: str, request: ReportRequest, language: str) -> list[bytes]:
-    """Draw the report, or the letter in a language, as fine as it is printed."""
-    if document == LETTER_FORMAT:
-        from app.reports.patient.letter import letter_pages
-
-        return letter_pages(request, language, PRINTED_PPI)
-    from app.reports.patient.document import ReportPreview
-
-    return ReportPreview().pages(request, PRINTED_PPI)
 
 
 def make_printer(name: str, paper: str) -> QPrinter:

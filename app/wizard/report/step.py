@@ -4,6 +4,7 @@ import logging
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -30,8 +31,8 @@ from app.wizard.report.comment_control import CommentControl
 from app.wizard.report.frame import ReportFrame
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import LETTER
-from app.wizard.report.printing import ReportPrinter, printed_pages
-from app.wizard.report.saving import OTHERS, Export, exporting, file_name, previews, saving_report
+from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
+from app.wizard.report.saving import OTHERS, Export, file_name
 from app.wizard.report.thin_line import ThinLineSource
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step, StepId
@@ -42,10 +43,10 @@ from app.workers.library_controller import LibraryController
 from core.session import RecordingKind
 
 if TYPE_CHECKING:
-    from app.reports.patient.document import ReportPreview
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import SessionSummary
     from app.wizard.report.leaving_dialog import Rows
+    from app.wizard.report.writing import Documents
     from app.wizard.visit import Visit
 
 _log = logging.getLogger(__name__)
@@ -69,7 +70,6 @@ class ReportStep(Step):
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
         self._has_failed = False  # the preview, so that no page is in sight
-        self._preview: ReportPreview | None = None  # of its threads
         self.comments = CommentControl(visit, self)
         self.comments.changed.connect(self._on_comment_changed)
         visit.preview.done.connect(self._on_previewed)
@@ -134,6 +134,12 @@ class ReportStep(Step):
         is_first = self.saved is None
         return BarState(primary=replace(save, is_requested=is_first), others=(export,), quiet=(*quiet, show), note=note)
 
+    @cached_property
+    def _documents(self) -> "Documents":
+        from app.wizard.report.writing import Documents  # Typst, Arrow and all formats, once they are asked for
+
+        return Documents()
+
     def _note(self) -> str:
         if self.comments.is_unconfirmed:
             return tr("The clinical comment is not confirmed, so it is not printed.")
@@ -154,7 +160,11 @@ class ReportStep(Step):
         request, stored = self.request(), self._visit.session
         if request is not None and stored is not None:
             self.is_saving = True
-            work = saving_report(request, stored.id, Path(file))
+            session_id = stored.id
+
+            def work(opened: "OpenedLibrary", report: Report) -> Path:
+                return self._documents.write_report(opened, report, request, session_id, Path(file))
+
             self._controller.run_long(work, self._on_saved, self._on_refused, None, self)
 
     def _export(self) -> None:
@@ -166,7 +176,11 @@ class ReportStep(Step):
             self._ask_where()
             return
         session_id = session.id
-        self._controller.run(lambda opened: previews(opened, session_id), self._on_previews, self._on_refused, self)
+
+        def work(opened: "OpenedLibrary") -> "dict[frozenset[str], Rows]":
+            return self._documents.previews(opened, session_id)
+
+        self._controller.run(work, self._on_previews, self._on_refused, self)
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody states where to."""
@@ -227,7 +241,7 @@ class ReportStep(Step):
 
         def work(opened: "OpenedLibrary", _report: Report) -> tuple[str, list[bytes]]:
             opened.library.audit.note(Action.PRINT, about("session", session_id), format=document)
-            return document, printed_pages(document, request, language)
+            return document, self._documents.printed_pages(document, request, language, PRINTED_PPI)
 
         self._controller.run_long(work, self._on_printable, self._on_refused, None, self)
 
@@ -300,11 +314,8 @@ class ReportStep(Step):
 
     def _previewing(self, request: ReportRequest, ppi: float, is_draft_required: bool) -> Work:
         def work(_report: Report) -> object:
-            from app.reports.patient.document import ReportPreview
-
-            self._preview = self._preview or ReportPreview()
-            pages = self._preview.pages(request, ppi)
-            return pages, self._preview.comment_draft(request) if is_draft_required else ""
+            preview = self._documents.preview
+            return preview.pages(request, ppi), preview.comment_draft(request) if is_draft_required else ""
 
         return work
 
@@ -396,11 +407,14 @@ class ReportStep(Step):
         chosen, language = tuple(page.formats.chosen), page.language.choice
         export = Export(session, analysis, self.request(), chosen, self._kept, language)
         self.is_saving = True
-        work = exporting(export, stored, Path(folder))
+
+        def work(opened: "OpenedLibrary", report: Report) -> tuple[Path, list[str]]:
+            return self._documents.write_export(opened, report, export, stored, Path(folder))
+
         self._controller.run_long(work, self._on_exported, self._on_refused, None, self)
 
-    def _on_saved(self, found: tuple[Path, list[str]]) -> None:
-        self.is_saving, (self.saved, _) = False, found
+    def _on_saved(self, file: Path) -> None:
+        self.is_saving, self.saved = False, file
         self.reported.emit("", "")
         self.changed.emit()
 

@@ -15,6 +15,7 @@ from app.results.detail_pages import DetailPages
 from app.summary.agreed import agreed_with
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import date_of
+from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
@@ -23,6 +24,7 @@ from app.widgets.rail_row import StepState
 from app.widgets.sentence_page import SentencePage
 from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.results.figures import saved_from_library
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.resuming import course_to, courses_before
 from app.wizard.step import Step, StepId
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
     from app.editing.session_recording import SessionRecording
     from app.results.result_page import ResultPage
     from app.results.result_parts import ResultParts
-    from app.summary.request import AnalysedVisit
     from app.wizard.visit import Visit
     from core.results import Analysis
     from core.session import Session
@@ -185,8 +186,6 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
-        from app.summary.request import AnalysedVisit  # as the results' page, which imported it
-
         session = self._visit.evaluation.session
         if session is None or (self._held is not None and self._held[0] is session and self._held[1] is analysis):
             return
@@ -221,8 +220,6 @@ class ResultsStep(Step):
         self._show()
 
     def _on_figures_requested(self, what: str, folder: Path, write: Callable[[], None]) -> None:
-        from app.results.diagnostics_controller import saved_from_library
-
         if (session := self._visit.session) is not None:
             session_id = session.id
             self._visit.controller.run(
@@ -279,8 +276,8 @@ class ResultsStep(Step):
             page.condition_typed.connect(self._on_condition_typed)
             page.kept_turned.connect(self._on_kept_turned)
             page.sign_turned.connect(self._on_sign_turned)
-            page.sides_swapped.connect(self._on_sides_swapped)
-            page.closed.connect(self._on_corrected)
+            page.swap.clicked.connect(self._on_sides_swapped)
+            page.back.clicked.connect(self._on_corrected)
         return page
 
     def _recording(self, key: str) -> "SessionRecording | None":
@@ -341,7 +338,7 @@ class ResultsStep(Step):
 
     # earlier visits
 
-    def _course(self, visit: "AnalysedVisit") -> tuple[CourseVisit, ...]:
+    def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
         stored, (session_id, before) = self._visit.session, self._before
         if stored is None or stored.id != session_id:
             return ()
@@ -446,7 +443,7 @@ class _ResultsFrame(PageStack):
         """Make the next part of the results; whether there was one."""
         if self._results is not None:
             return False
-        from app.results.result_parts import ResultParts
+        from app.results.result_parts import ResultParts  # as below
 
         self._parts = self._parts or ResultParts()
         if not self._parts.make_next():

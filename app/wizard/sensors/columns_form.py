@@ -10,14 +10,14 @@ from enum import StrEnum
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 PADDING = 24
@@ -57,22 +57,13 @@ class ColumnsReported:
         )
 
 
-class ColumnsForm(Themed):
-    """
-    Signals
-    -------
-    changed
-        Something else is entered.
-    back_pressed
-        Other sources are asked for.
-    """
+class ColumnsForm(QWidget):
+    """"""
 
-    changed = Signal()
-    back_pressed = Signal()
+    changed = Signal()  # something else is entered
 
     def __init__(self) -> None:
         super().__init__()
-        self._title = Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
         self._where = Text(size=14, tone="ink2", wraps=True)
         self._room = 0
         self.meanings: list[Choice] = []
@@ -100,8 +91,6 @@ class ColumnsForm(Themed):
         self.notice = Notice(size=16)
         self.back = Button(tr("Other sources"), ButtonKind.QUIET)
         self._build()
-        self.back.clicked.connect(self.back_pressed)
-        self._apply_theme()
 
     @property
     def reported(self) -> ColumnsReported:
@@ -157,8 +146,7 @@ class ColumnsForm(Themed):
 
     def _choice(self, label: str, options: dict[str, str]) -> Choice:
         choice = Choice(label)
-        for key, words in options.items():
-            choice.addItem(words, key)
+        choice.offer(((words, key) for key, words in options.items()), chosen=None)
         choice.activated.connect(self.changed)
         return choice
 
@@ -192,10 +180,7 @@ class ColumnsForm(Themed):
         self._body.setDirection(way)
 
     def _build(self) -> None:
-        self._card = Card()
-        self._heading = QVBoxLayout()
-        self._heading.addWidget(self._title)
-        self._heading.addWidget(self._where)
+        card, title = Card(), Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
         self._grid = QGridLayout()
         self._grid.setColumnStretch(1, 1)
         self._units = QGridLayout()
@@ -203,30 +188,16 @@ class ColumnsForm(Themed):
             self._units.addWidget(Text(choice.accessibleName(), 15), number, 0)
             self._units.addWidget(choice, number, 1)
         self._units.setRowStretch(4, 1)
-        self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._body.addLayout(self._grid, 3)
-        self._body.addLayout(self._units, 2)
-        self._card.column.addLayout(self._heading)
-        self._card.column.addWidget(self.notice)
-        self._card.column.addLayout(self._body)
-        self._card.column.addStretch(1)
-        verbs = QHBoxLayout()
-        verbs.addWidget(self.back)
-        verbs.addStretch(1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self._card, 1)
-        self._column.addLayout(verbs)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(12))
-        self._heading.setSpacing(px(4))
-        self._body.setSpacing(px(32))
+        self._body = lay_out(
+            QBoxLayout(QBoxLayout.Direction.LeftToRight), (self._grid, 3), (self._units, 2), spacing=32
+        )
+        heading = lay_out(QVBoxLayout(), title, self._where, spacing=4)
+        lay_out(card.column, heading, self.notice, self._body, 1)
+        verbs = lay_out(QHBoxLayout(), self.back, 1)
+        lay_out(QVBoxLayout(self), (card, 1), verbs, margins=0, spacing=12)
         for grid in (self._grid, self._units):
-            grid.setHorizontalSpacing(px(16))
-            grid.setVerticalSpacing(px(8))
-        self._fit()
+            scaled(grid.setHorizontalSpacing, 16)
+            scaled(grid.setVerticalSpacing, 8)
 
 
 def _choose(choice: Choice, key: str) -> None:

@@ -95,13 +95,7 @@ class ColumnsTelling(QObject):
         self._form.show_message(*(_missing() if columns is None else _stated_of(columns, table)))
 
     def keep(self) -> None:
-        """Remember what is entered, and let go of the port.
-
-        Raises
-        ------
-        OSError
-            It cannot be written.
-        """
+        """Store what is entered and release the port; raises OSError where it cannot be written."""
         columns = self.columns
         if columns is not None:
             keep_columns([one.port.key for one in self._lines], columns)

@@ -11,17 +11,17 @@ from PySide6.QtCore import QModelIndex, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TableCell, TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING, MARK = 44, 32, 10, 20
@@ -112,24 +112,12 @@ class DotList(CellTable):
             super().keyPressEvent(event)
 
 
-class DotForm(Themed):
-    """
-    Signals
-    -------
-    turned
-        The number of a sensor whose tick was turned.
-    identify_pressed
-        The number of the sensor whose light is to blink.
-    changed
-        They are to measure otherwise.
-    back_pressed
-        Other sources are asked for.
-    """
+class DotForm(QWidget):
+    """"""
 
-    turned = Signal(int)
-    identify_pressed = Signal(int)
-    changed = Signal()
-    back_pressed = Signal()
+    turned = Signal(int)  # the number of a sensor whose tick was turned
+    identify_pressed = Signal(int)  # the number of the sensor whose light is to blink
+    changed = Signal()  # they are to measure otherwise
 
     def __init__(self) -> None:
         super().__init__()
@@ -157,7 +145,6 @@ class DotForm(Themed):
         self._build()
         self._connect()
         self._show_consequence()
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -238,8 +225,7 @@ class DotForm(Themed):
 
     def _choice(self, label: str, options: dict[int, str]) -> Choice:
         choice = Choice(label)
-        for key, words in options.items():
-            choice.addItem(words, key)
+        choice.offer(((words, key) for key, words in options.items()), chosen=None)
         return choice
 
     def _row(self, number: int, line: DotLine) -> TableRow:
@@ -256,33 +242,17 @@ class DotForm(Themed):
 
     def _build(self) -> None:
         self._card = Card()
-        self._heading = QVBoxLayout()
-        self._heading.addWidget(self._title)
-        self._heading.addWidget(self._lead)
-        left, self._choices = QVBoxLayout(), QVBoxLayout()
-        left.addWidget(self.list, 1)
-        below = QHBoxLayout()
-        below.addWidget(self.identify)
-        below.addStretch(1)
-        left.addLayout(below)
+        heading = lay_out(QVBoxLayout(), self._title, self._lead, spacing=4)
+        left = lay_out(QVBoxLayout(), (self.list, 1), lay_out(QHBoxLayout(), self.identify, 1))
+        self._choices = lay_out(QVBoxLayout(), spacing=6)
         for choice in (self.walks, self.rate, self.profile):
-            self._choices.addWidget(Text(choice.accessibleName(), 14, tone="ink2"))
-            self._choices.addWidget(choice)
-        self._choices.addWidget(self._consequence)
-        self._choices.addStretch(1)
-        self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._body.addLayout(left, 3)
-        self._body.addLayout(self._choices, 2)
-        self._card.column.addLayout(self._heading)
-        self._card.column.addWidget(self.notice)
-        self._card.column.addLayout(self._body, 1)
-        verbs = QHBoxLayout()
-        verbs.addWidget(self.back)
-        verbs.addStretch(1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self._card, 1)
-        self._column.addLayout(verbs)
+            lay_out(self._choices, Text(choice.accessibleName(), 14, tone="ink2"), choice)
+        lay_out(self._choices, self._consequence, 1)
+        self._body = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight), (left, 3), (self._choices, 2), spacing=32)
+        lay_out(self._card.column, heading, self.notice, (self._body, 1))
+        verbs = lay_out(QHBoxLayout(), self.back, 1)
+        lay_out(QVBoxLayout(self), (self._card, 1), verbs, margins=0, spacing=12)
+        scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.show_message("")
 
     def _connect(self) -> None:
@@ -291,7 +261,6 @@ class DotForm(Themed):
         self.identify.clicked.connect(self._on_identify_clicked)
         for choice in (self.walks, self.rate, self.profile):
             choice.activated.connect(self._on_chosen)
-        self.back.clicked.connect(self.back_pressed)
 
     def _show_consequence(self) -> None:
         record_hz = self.choice.record_hz
@@ -323,11 +292,3 @@ class DotForm(Themed):
     def _on_chosen(self) -> None:
         self._show_consequence()
         self.changed.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(12))
-        self._heading.setSpacing(px(4))
-        self._body.setSpacing(px(32))
-        self._choices.setSpacing(px(6))
-        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))

@@ -14,7 +14,8 @@ from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.wizard.sensor_sync import REASONS, SyncPurpose, progress_of
 from app.wizard.sensors.dot_form import DotLine
-from app.wording.translation import filled, tr, tr_n
+from app.wording.translation import tr, tr_n
+from app.workers.refusals import refusal_of
 from devices.dot.synchronising import SyncFailure
 from devices.live import SourceLostError, SourceRefusedError
 
@@ -34,20 +35,11 @@ class _RequiredError(Exception):
 
 
 class DotSetup(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    ready
-        A `SourceChoice` whose sensors are on one clock.
-    left
-        Other sources are asked for.
-    """
+    """"""
 
-    changed = Signal()
-    ready = Signal(object)
-    left = Signal()
+    changed = Signal()  # something else is shown, or can be done
+    ready = Signal(object)  # A `SourceChoice` whose sensors are on one clock
+    left = Signal()  # other sources are asked for
 
     def __init__(self, sensors: "WornSensors", parent: QObject) -> None:
         super().__init__(parent)
@@ -59,7 +51,7 @@ class DotSetup(QObject):
         self._worn: set[int] = set()
         self._asked: dict[int, DotAsked] = {}  # by the thread that asks
         self._failed: Mapping[str, SyncFailure] = {}
-        self._required: deque[Callable[[], None]] = deque()
+        self._required: deque[Callable[[], object]] = deque()
         self._is_stopping = False
         self._refusal = ("", "")
         self._group: DotGroup | None = None
@@ -101,7 +93,7 @@ class DotSetup(QObject):
         self._form, self._progress = form, progress
         form.turned.connect(self._on_turned)
         form.identify_pressed.connect(self._on_identify_pressed)
-        form.back_pressed.connect(self.left)
+        form.back.clicked.connect(self.left)
         progress.stop_pressed.connect(self._sensors.sync.stop)
 
     def begin(self, choice: "SourceChoice", known: Collection[str]) -> None:
@@ -190,7 +182,7 @@ class DotSetup(QObject):
         fleet = self._fleet
         assert fleet is not None
         asked: dict[int, DotAsked] = {}
-        required: deque[Callable[[], None]] = deque()
+        required: deque[Callable[[], object]] = deque()
         self._asked, self._required = asked, required
         wait = self._sensors.closings()
 
@@ -224,7 +216,7 @@ class DotSetup(QObject):
         try:
             self._fleet.stop_recordings(recording)
         except SourceRefusedError as problem:
-            self._refusal = f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
+            self._refusal = refusal_of(problem)
         except SourceLostError:
             self._refusal = tr("A sensor is out of range."), tr("Bring the sensor closer, then try again.")
         else:
@@ -287,7 +279,7 @@ class DotSetup(QObject):
     def _on_identify_pressed(self, number: int) -> None:
         fleet = self._fleet
         if fleet is not None:
-            self._required.append(partial(_identify, fleet, number))
+            self._required.append(lambda: fleet.identify(number))
 
     def _on_asked(self, _share: float, _what: str) -> None:
         self._show()
@@ -295,10 +287,8 @@ class DotSetup(QObject):
     def _on_asking_failed(self, _error: Exception) -> None:
         if self.is_on:
             self._is_stopping = False
-            self._refusal = (
-                tr("The sensors could not be queried."),
-                tr("Choose the sensor source again. See the log for details."),
-            )
+            then = tr("Choose the sensor source again. See the log for details.")
+            self._refusal = tr("The sensors could not be queried."), then
             self._show()
 
     def _on_sync_changed(self) -> None:
@@ -322,10 +312,6 @@ class DotSetup(QObject):
 
 def _unanswered(fleet: DotFleet, asked: Mapping[int, DotAsked]) -> list[int]:
     return [number for number in range(len(fleet.dots)) if asked.get(number, DotAsked.SILENT) is DotAsked.SILENT]
-
-
-def _identify(fleet: DotFleet, number: int) -> None:
-    fleet.identify(number)
 
 
 def _note_of(asked: DotAsked) -> str:

@@ -16,23 +16,17 @@ from core.samples import FloatArray, ImuBlock
 class PlacingState:
     """What the movement so far shows.
 
-    Attributes
-    ----------
-    shaken, shaken_together, shakes
-        As in `ShakingState`; `shakes` counts, so that nothing is missed between two looks of the screen.
-    movement_deg_s
-        Spread of each sensor's rate over its last quarter of a second.
-    chains
-        The legs, once the patient moves; None before.
-    is_sure
-        Whether the legs are certain, and have been for two seconds; left and right are another matter.
+    `shaken`, `shaken_together`, `shakes`: as in `ShakingState`; `shakes` counts, so that nothing is missed between two
+    looks of the screen.
+    `movement_deg_s`: spread of each sensor's rate over its last quarter of a second.
+    `is_sure`: whether the legs are certain, and have been for two seconds; left and right are another matter.
     """
 
     shaken: str | None = None
     shaken_together: tuple[str, ...] = ()
     shakes: int = 0
     movement_deg_s: Mapping[str, float] = field(default_factory=dict)
-    chains: Chains | None = None
+    chains: Chains | None = None  # the legs, once the patient moves; None before
     is_sure: bool = False
 
     def sites(self, first_moved: Side) -> dict[str, Site]:

@@ -19,7 +19,8 @@ from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
 from app.wizard.sensors.memories_form import HeldLine
 from app.wording.patients import when
 from app.wording.recordings import shown_names
-from app.wording.translation import filled, tr, tr_n
+from app.wording.translation import tr, tr_n
+from app.workers.refusals import refusal_of
 from devices.live import SourceLostError, SourceRefusedError
 
 if TYPE_CHECKING:
@@ -34,17 +35,10 @@ Asked = Callable[[DotMemories, Callable[[str], None], Callable[[], None]], objec
 
 
 class MemoriesControl(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    left
-        The sensors are asked for, and whether they were live before.
-    """
+    """"""
 
-    changed = Signal()
-    left = Signal(bool)
+    changed = Signal()  # something else is shown, or can be done
+    left = Signal(bool)  # the sensors are asked for, and whether they were live before
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)
@@ -84,7 +78,7 @@ class MemoriesControl(QObject):
     def show_on(self, form: "MemoriesForm", progress: "SensorsProgress") -> None:
         """Have these show what is found and done, from now on."""
         self._form, self._progress = form, progress
-        form.chosen.connect(self.changed)
+        form.list.chosen.connect(self.changed)
         progress.stop_pressed.connect(self._on_stop)
 
     def begin(self) -> None:
@@ -296,12 +290,10 @@ class MemoriesControl(QObject):
         self._error = error
         what, then = tr("The sensors could not be queried."), tr("Try again. See the log for details.")
         if isinstance(error, SourceRefusedError):
-            what, then = f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}."
+            what, then = refusal_of(error)
         elif isinstance(error, SourceLostError):
-            what, then = (
-                tr("A sensor is out of range."),
-                tr("Bring all sensors closer to this computer, then try again."),
-            )
+            what = tr("A sensor is out of range.")
+            then = tr("Bring all sensors closer to this computer, then try again.")
         self._form.show_unknown(what, then)
         self._show()
 

@@ -3,17 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING = 48, 32, 10
@@ -31,16 +30,7 @@ class HeldLine:
     can_fetch: bool = False
 
 
-class MemoriesForm(Themed):
-    """
-    Signals
-    -------
-    chosen
-        Another line is.
-    """
-
-    chosen = Signal()
-
+class MemoriesForm(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._lines: tuple[HeldLine, ...] = ()
@@ -49,18 +39,11 @@ class MemoriesForm(Themed):
         self.list = CellTable(tr("Recordings in the sensors"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
         self.notice = Notice(size=16)
         card = Card()
-        card.column.addWidget(self._title)
-        card.column.addWidget(self._lead)
-        card.column.addWidget(self.notice)
-        card.column.addWidget(self.list, 1)
-        card.column.addStretch()  # where there is no list
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(card, 1)
-        self.list.chosen.connect(self._on_chosen)
+        lay_out(card.column, self._title, self._lead, self.notice, (self.list, 1), 0)  # the 0: where there is no list
+        lay_out(QVBoxLayout(self), (card, 1), margins=0)
+        scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.show_message("")
         self.show_lines(())
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -111,13 +94,6 @@ class MemoriesForm(Themed):
         """Say what is the matter, and what to do; "" takes it back."""
         self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
-
-    def _on_chosen(self, _number: object) -> None:
-        self.chosen.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))
 
 
 def _row(number: int, line: HeldLine) -> TableRow:

@@ -10,24 +10,17 @@ from itertools import pairwise
 
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QResizeEvent
-from PySide6.QtWidgets import (
-    QBoxLayout,
-    QFrame,
-    QHBoxLayout,
-    QScrollArea,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.sensors_progress import SensorsProgress
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wizard.sensors.columns_form import ColumnsForm
 from app.wizard.sensors.dot_form import DotForm
 from app.wizard.sensors.memories_form import MemoriesForm
@@ -55,28 +48,15 @@ class Way(StrEnum):
     MOTION = "motion"
 
 
-class SensorsPage(Themed):
+class SensorsPage(QWidget):
     """
-    Signals
-    -------
-    assigned
-        A sensor's name, and the site it is worn at; None: nowhere. On a worn site the two change places.
-    way_chosen
-        A `Way`.
-    source_chosen
-        The key of a `SourceOption`.
-    identify_pressed, reconnect_pressed
-        A sensor's name.
-    stop_pressed
-        Look for sensors no longer.
+
+    `assigned`: a sensor's name, and the site it is worn at; None: nowhere. On a worn site the two change places.
     """
 
     assigned = Signal(str, object)
-    way_chosen = Signal(str)
-    source_chosen = Signal(str)
-    identify_pressed = Signal(str)
-    reconnect_pressed = Signal(str)
-    stop_pressed = Signal()
+    way_chosen = Signal(str)  # A `Way`
+    source_chosen = Signal(str)  # the key of a `SourceOption`
 
     def __init__(self) -> None:
         super().__init__()
@@ -117,6 +97,7 @@ class SensorsPage(Themed):
         self.dots, self.memories, self.progress = DotForm(), MemoriesForm(), SensorsProgress()
         self._build()
         self._connect()
+        on_theme(self._fit)
         self.show_no_source()
 
     @property
@@ -148,18 +129,10 @@ class SensorsPage(Themed):
         if self._in_sight is self.nothing and self.nothing.buttons:
             self.nothing.buttons[0].setFocus()
             self._whole.ensureWidgetVisible(self.nothing.buttons[0])
-        elif self._in_sight is self.searching:
-            self.searching.stop.setFocus()
-        elif self._in_sight is self.stored:
-            self.stored.focus()
-        elif self._in_sight is self.columns:
-            self.columns.focus()
-        elif self._in_sight is self.dots:
-            self.dots.focus()
-        elif self._in_sight is self.memories:
-            self.memories.focus()
-        elif self._in_sight is self.progress:
-            self.progress.focus()
+        elif isinstance(
+            self._in_sight, Searching | SessionChooser | ColumnsForm | DotForm | MemoriesForm | SensorsProgress
+        ):
+            self._in_sight.focus()
         elif row := self.list.rows.get(self.list.selection):
             row.setFocus()
 
@@ -180,13 +153,9 @@ class SensorsPage(Themed):
         if (is_shown and (tuple(options), chosen) == self._offered) or self.sources.view().isVisible():
             return  # in its view one is chosen now
         self._offered = (tuple(options), chosen)
-        with QSignalBlocker(self.sources):
-            self.sources.clear()
-            for option in options:
-                words = tr("{source}: {found}").format(source=option.name, found=option.note)
-                self.sources.addItem(words if option.note else option.name, option.key)
-            self.sources.setCurrentIndex(self.sources.findData(chosen))
-        self.sources.updateGeometry()
+        found = tr("{source}: {found}")
+        lines = [(found.format(source=one.name, found=one.note) if one.note else one.name, one.key) for one in options]
+        self.sources.offer(lines, chosen, otherwise=-1)
         usual = [option for option in options if not option.is_last][:OFFERED_AT_ONCE]
         self.nothing.show_options([*usual, *(option for option in options if option.is_last)])
         for before, after in pairwise(
@@ -295,7 +264,7 @@ class SensorsPage(Themed):
         row = self.list.rows.get(self.list.selection)
         if row is None or not row.sensor.can_identify or self._in_sight is not self._lists:
             return False
-        self.identify_pressed.emit(row.name)
+        self.list.identify_pressed.emit(row.name)
         return True
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -312,72 +281,45 @@ class SensorsPage(Themed):
         return list(self.places.shown_tiles.values())
 
     def _build(self) -> None:
-        words = QVBoxLayout()
-        words.addWidget(self.title)
-        words.addWidget(self.subtitle)
-        self._words = words
-        self._head = QHBoxLayout()
-        self._head.addLayout(words, 1)
-        self._head.addWidget(self.sources, 0, Qt.AlignmentFlag.AlignVCenter)
-        self._rows = _scrolling(self.list)
-        self._beside = QVBoxLayout()
-        self._beside.addWidget(self.ways)
-        self._beside.addWidget(self._rows, 1)
-        self._beside.addWidget(self.notice)
+        words = lay_out(QVBoxLayout(), self.title, self.subtitle, spacing=4)
+        sources = (self.sources, 0, Qt.AlignmentFlag.AlignVCenter)
+        head = lay_out(QHBoxLayout(), (words, 1), sources, spacing=16)
+        self._rows = _Scroll(self.list)
+        beside = lay_out(QVBoxLayout(), self.ways, (self._rows, 1), self.notice, spacing=8)
         self._lists = QWidget()
         self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._lists)
-        self._body.setContentsMargins(0, 0, 0, 0)
-        self._body.addWidget(self.places, 0)
-        self._body.addLayout(self._beside, 1)
+        lay_out(self._body, self.places, (beside, 1), margins=0)
         content = QWidget()
-        self._column = QVBoxLayout(content)
-        self._column.addLayout(self._head)
-        # not stacked: each would ask room for all
-        for page in (
-            self.nothing,
-            self.searching,
-            self.stored,
-            self.columns,
-            self.dots,
-            self.memories,
-            self.progress,
-            self._lists,
-        ):
-            self._column.addWidget(page, 1)
-            page.hide()
+        self._column = lay_out(QVBoxLayout(content), head, spacing=16)
         self._in_sight: QWidget = self.nothing
-        self.nothing.show()
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        self._whole = _scrolling(content)
-        whole.addWidget(self._whole)
+        asking = self.searching, self.stored, self.columns, self.dots, self.memories, self.progress
+        for page in (self.nothing, *asking, self._lists):  # not stacked: each would ask room for all
+            self._column.addWidget(page, 1)
+            page.setVisible(page is self.nothing)
+        self._whole = _Scroll(content)
+        lay_out(QVBoxLayout(self), self._whole, margins=0)
+        scaled(self.notice.setMinimumHeight, 66)
 
     def _connect(self) -> None:
         self.sources.activated.connect(self._on_source_activated)
         self.nothing.chosen.connect(self.source_chosen)
-        self.searching.stop.clicked.connect(self.stop_pressed)
         self.ways.chosen.connect(self._on_way_chosen)
         self.places.dropped.connect(self.assign)
         self.places.hovered.connect(self._on_hovered)
         self.places.pressed.connect(self._on_place_pressed)
         self.list.assigned.connect(self.assign)
         self.list.selected.connect(self._on_selected)
-        self.list.identify_pressed.connect(self.identify_pressed)
-        self.list.reconnect_pressed.connect(self.reconnect_pressed)
         self._flash_end.timeout.connect(self._end_flash)
-        self._apply_theme()
 
     def _show(self, page: QWidget) -> None:
         """Change over to `page`; a focus that was on the page before goes on with it."""
-        before = self._in_sight
-        if page is before:
-            return
-        had_focus = before.isAncestorOf(self.focusWidget() or self)
-        self._in_sight = page
-        before.hide()
-        page.show()
-        if had_focus:
-            self.focus()
+        if page is not self._in_sight:
+            had_focus = self._in_sight.isAncestorOf(self.focusWidget() or self)
+            self._in_sight.hide()
+            self._in_sight = page
+            page.show()
+            if had_focus:
+                self.focus()
 
     def assign(self, sensor: str, site: Site | None) -> None:
         before = next((one.site for one in self._sensors if one.name == sensor), None)
@@ -463,7 +405,7 @@ class SensorsPage(Themed):
         self.columns.set_room(room)
         self.dots.set_room(room, is_narrow=self._is_compact)
         self.places.set_narrow(self._is_compact)
-        figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
+        figure, rows = self.places.least_width, self.list.minimumWidth()
         rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())
         gap = px(12 if self._is_compact else 16)
         self._body.setSpacing(gap)
@@ -473,7 +415,7 @@ class SensorsPage(Themed):
         if is_stacked:
             self.places.set_narrow(True)
             self.places.setMinimumWidth(0)  # the bar that scrolls both takes of the room
-            self.places.setMaximumWidth(room)
+            self.places.setMaximumWidth(max(0, room))
         elif self._is_compact:
             spare = max(0, room - gap - rows - figure)
             self.places.setFixedWidth(min(figure + spare // 2, max(figure, px(FIGURE_WIDTH[0]))))
@@ -514,28 +456,16 @@ class SensorsPage(Themed):
             self._rows.ensureWidgetVisible(row, 0, margin)
             self._whole.ensureWidgetVisible(row, 0, margin)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(16))
-        self._words.setSpacing(px(4))
-        self._head.setSpacing(px(16))
-        self._beside.setSpacing(px(8))
-        self.notice.setMinimumHeight(px(66))
-        self._fit()
-
 
 class _Scroll(QScrollArea):
     """Takes the room that is left and asks for none."""
 
+    def __init__(self, content: QWidget) -> None:
+        super().__init__()
+        self.setWidgetResizable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setWidget(content)
+
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()
-
-
-def _scrolling(content: QWidget) -> QScrollArea:
-    area = _Scroll()
-    area.setWidgetResizable(True)
-    area.setFrameShape(QFrame.Shape.NoFrame)
-    area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-    area.setWidget(content)
-    return area

@@ -1,12 +1,13 @@
 """A sensor that is dragged from its row or from the place where it is worn."""
 
 from PySide6.QtCore import QMimeData, QPoint, Qt
-from PySide6.QtGui import QColor, QDrag, QFontMetrics, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QDrag, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import px
+from app.theme.ground import Ground, set_ground
 from app.widgets.painted_button import PaintedButton
-from app.widgets.text import SEMIBOLD
+from app.widgets.text import SEMIBOLD, Text
 
 DRAGGED = "application/x-gaitwright-sensor"
 
@@ -48,26 +49,17 @@ def drag_sensor(source: QWidget, sensor: str) -> None:
     data.setData(DRAGGED, sensor.encode())
     drag = QDrag(source)
     drag.setMimeData(data)
-    label = _Carried(sensor)
+    label = carried(sensor)
     drag.setPixmap(label.grab())
     drag.setHotSpot(QPoint(label.width() // 2, label.height() // 2))
     label.deleteLater()
     drag.exec(Qt.DropAction.MoveAction)
 
 
-class _Carried(QWidget):
+def carried(sensor: str) -> Text:
     """What hangs at the mouse while a sensor is dragged."""
-
-    def __init__(self, sensor: str) -> None:
-        super().__init__()
-        self._sensor = sensor
-        width = QFontMetrics(current_theme().font(16, SEMIBOLD, is_code=True)).horizontalAdvance(sensor)
-        self.resize(width + px(32), px(40))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.inv))
-        painter.setPen(QColor(theme.colours.inv_ink))
-        painter.setFont(theme.font(16, SEMIBOLD, is_code=True))
-        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._sensor)
+    label = Text(sensor, 16, SEMIBOLD, tone="inv_ink", is_code=True)
+    label.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    set_ground(label, Ground("inv", radius=0, inset=0))
+    label.resize(label.fontMetrics().horizontalAdvance(sensor) + px(32), px(40))
+    return label

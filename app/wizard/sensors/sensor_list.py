@@ -2,43 +2,35 @@
 
 from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QFont, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QRect, QRectF, Qt, Signal
+from PySide6.QtGui import QAccessible, QFont, QFontMetrics
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.widgets.battery import WIDTH as CELL_WIDTH
+from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
 from app.wording.body import segment_name
 from app.wording.translation import figure_text, tr
 from core.body import LEG_SITES, Site
 from core.samples import FloatArray
 
-HEADING = 26
-SPACING = 8
+HEADING, SPACING = 18, 8
 GRIP, NARROW_GRIP = 30, 24
 COLUMN_GAP, NARROW_GAP = 12, 8
 IDENTIFY = 44
 TRACE_AT_LEAST = 48
 
 
-class SensorList(Themed):
-    """
-    Signals
-    -------
-    assigned
-        A sensor's name and the site it is worn at; None: nowhere.
-    selected
-        The name of the sensor that keys mean from now on.
-    """
+class SensorList(QWidget):
+    """"""
 
     accessible_role = QAccessible.Role.List
 
-    assigned = Signal(str, object)
-    selected = Signal(str)
+    assigned = Signal(str, object)  # A sensor's name and the site it is worn at; None: nowhere
+    selected = Signal(str)  # the name of the sensor that keys mean from now on
     identify_pressed = Signal(str)
     reconnect_pressed = Signal(str)
 
@@ -54,9 +46,9 @@ class SensorList(Themed):
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(self._heading)
         self._column.addStretch(1)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.setAccessibleName(tr("Sensors"))
-        self._apply_theme()
+        scaled(self._column.setSpacing, SPACING)
+        on_theme(self._arrange)
 
     def show_sensors(self, sensors: Sequence[SensorRow], places: tuple[Site, ...] = LEG_SITES) -> None:
         """Show these in this order, to be worn at these places; a row that stays keeps its focus."""
@@ -99,7 +91,7 @@ class SensorList(Themed):
         """Show rate and battery in the second line, where there is no room for columns."""
         if is_narrow != self._is_narrow:
             self._is_narrow = is_narrow
-            self._apply_theme()
+            self._arrange()
 
     def step(self, name: str, by: int) -> None:
         """Go on to the row above or below the one of `name`."""
@@ -167,13 +159,11 @@ class SensorList(Themed):
         charge = sensor.charge if sensor.battery is not None else ""
         return " · ".join(filter(None, [what or sensor.rate, charge]))
 
-    def minimumSizeHint(self) -> QSize:
-        theme = current_theme()
-        heading = QFontMetrics(theme.font(12)).horizontalAdvance(tr("Last 5 s")) + 1
-        trace = max(theme.px(TRACE_AT_LEAST), heading)
-        gap = theme.px(NARROW_GAP if self._is_narrow else COLUMN_GAP)
-        width = self._measured(0)["identify"].right() + theme.px(6) + gap + trace
-        return QSize(width, super().minimumSizeHint().height())
+    def _least_width(self) -> int:
+        heading = QFontMetrics(current_theme().font(12)).horizontalAdvance(tr("Last 5 s")) + 1
+        trace = max(px(TRACE_AT_LEAST), heading)
+        gap = px(NARROW_GAP if self._is_narrow else COLUMN_GAP)
+        return self._measured(0)["identify"].right() + px(6) + gap + trace
 
     def _add_row(self, name: str) -> None:
         row = self.rows[name] = SensorRowView(name, self.columns, self.second_line)
@@ -194,28 +184,16 @@ class SensorList(Themed):
         self._heading.update()
         for row in self.rows.values():
             row.arrange()
-        self.updateGeometry()
-
-    def _apply_theme(self) -> None:
-        self._column.setSpacing(px(SPACING))
-        self._arrange()
+        self.setMinimumWidth(self._least_width())
 
 
-class _Heading(QWidget):
+class _Heading(Painted):
     """The names of the columns."""
 
     def __init__(self, sensors: SensorList) -> None:
         super().__init__(sensors)
         self._list = sensors
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-
-    def sizeHint(self) -> QSize:
-        return QSize(0, px(HEADING - SPACING))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        for text in self.painted_texts():
-            text.paint(painter, current_theme().colours)
+        scaled(self.setFixedHeight, HEADING)
 
     def painted_texts(self) -> list[PaintedText]:
         font = current_theme().font(12)

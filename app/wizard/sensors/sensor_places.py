@@ -6,7 +6,7 @@ It has a tile for each place, tied to it by a line; sensors are dropped here.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QDragEnterEvent,
@@ -15,18 +15,18 @@ from PySide6.QtGui import (
     QDropEvent,
     QFontMetrics,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
+from app.widgets.painted import Painted
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
 from app.wording.body import name_of, segment_name
 from app.wording.translation import tr
@@ -55,21 +55,12 @@ class PlaceShown:
     is_flashing: bool = False
 
 
-class SensorPlaces(Themed):
-    """
-    Signals
-    -------
-    dropped
-        A sensor's name and the site it was let go over.
-    hovered
-        A sensor is being dragged over a site; "" and None: no longer.
-    pressed
-        The tile of a site.
-    """
+class SensorPlaces(QWidget):
+    """"""
 
-    dropped = Signal(str, Site)
-    hovered = Signal(str, object)
-    pressed = Signal(Site)
+    dropped = Signal(str, Site)  # A sensor's name and the site it was let go over
+    hovered = Signal(str, object)  # A sensor is being dragged over a site; "" and None: no longer
+    pressed = Signal(Site)  # the tile of a site
 
     def __init__(self) -> None:
         super().__init__()
@@ -78,6 +69,8 @@ class SensorPlaces(Themed):
         self._next: Site | None = None
         self._names: tuple[str, ...] = ()
         self.setAcceptDrops(True)
+        set_ground(self, Ground("surface", "line", radius=CARD_RADIUS))
+        scaled(self.setMinimumHeight, 300)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.figure = BodyFigure()
         self.figure.setParent(self)
@@ -86,6 +79,7 @@ class SensorPlaces(Themed):
         self.tiles[Site.PELVIS].hide()
         for tile in self.tiles.values():
             tile.clicked.connect(self._on_tile_clicked)
+        on_theme(self._arrange)
 
     @property
     def has_pelvis(self) -> bool:
@@ -132,25 +126,13 @@ class SensorPlaces(Themed):
                 return site
         return self.figure.site_at(QPointF(self.figure.mapFrom(self, point)))
 
-    def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(2 * self._beside_legs() + px(LEGS_AT_LEAST), px(300))
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()
+    @property
+    def least_width(self) -> int:
+        return 2 * self._beside_legs() + px(LEGS_AT_LEAST)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._arrange()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        painter.setBrush(QColor(theme.colours.surface))
-        radius = CARD_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if event.mimeData().hasFormat(DRAGGED):
@@ -209,9 +191,6 @@ class SensorPlaces(Themed):
     def _beside_legs(self) -> int:
         return self._edge() + self._tile_width() + px(BESIDE_LEGS)
 
-    def _apply_theme(self) -> None:
-        self._arrange()
-
     def _arrange(self) -> None:
         """Put the figure in the middle and each tile beside its place, none over another."""
         px = current_theme().px
@@ -242,7 +221,7 @@ class SensorPlaces(Themed):
         self.pressed.emit(tile.site)
 
 
-class _Lines(QWidget):
+class _Lines(Painted):
     """From each tile to its place on the figure; lies over both and takes no clicks."""
 
     def __init__(self, places: SensorPlaces) -> None:
@@ -250,10 +229,8 @@ class _Lines(QWidget):
         self._places = places
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1))
         figure = self._places.figure
         for site, tile in self._places.shown_tiles.items():
@@ -311,12 +288,10 @@ class _Tile(DraggedButton):
     def _chip_room(self) -> int:
         return CHIP + 6 if self.site.side is not None else 0
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
         place = self._place
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         is_caution = place.mark in (SensorMark.LOOK, SensorMark.SILENT)
         fill, ink, edge = (c.caution, c.caution_ink, c.caution_edge) if is_caution else (c.surface, c.ink, c.control)
         if place.is_flashing:
@@ -341,8 +316,6 @@ class _Tile(DraggedButton):
             painter.drawText(where, Qt.AlignmentFlag.AlignCenter, side.letter)
         elif side is not None:
             paint_chip(painter, where, side, theme)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
         theme, place = current_theme(), self._place

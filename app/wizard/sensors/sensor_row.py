@@ -11,12 +11,11 @@ from PySide6.QtGui import (
     QFocusEvent,
     QKeyEvent,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
@@ -145,6 +144,7 @@ class SensorRowView(DraggedButton):
         self.identify.clicked.connect(self._on_identify_clicked)
         self.clicked.connect(self._on_clicked)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
+        scaled(self.setMinimumHeight, ROW_AT_LEAST)
         self.offer(LEG_SITES)
 
     def offer(self, places: tuple[Site, ...]) -> None:
@@ -216,9 +216,6 @@ class SensorRowView(DraggedButton):
     def sizeHint(self) -> QSize:
         return QSize(0, px(ROW))
 
-    def minimumSizeHint(self) -> QSize:
-        return QSize(0, px(ROW_AT_LEAST))
-
     def _places(self) -> dict[str, QRect]:
         """Where the columns lie, as high as the row."""
         columns = self._columns(self.width()).items()
@@ -248,12 +245,10 @@ class SensorRowView(DraggedButton):
             case _:
                 super().keyPressEvent(event)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
         sensor = self.sensor
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         is_caution, is_selected = sensor.wants_look, self._is_selected
         ink, second = (c.caution_ink, c.caution_ink) if is_caution else (c.ink, c.ink2)
         edge = c.caution_edge if is_caution else c.control if is_selected else c.line
@@ -270,8 +265,6 @@ class SensorRowView(DraggedButton):
         if places["battery"].width() and sensor.battery is not None and sensor.silent_s <= 0:
             x, y = places["battery"].x(), (self.height() - px(CELL_HEIGHT)) / 2
             paint_battery(painter, QRectF(x, y, px(CELL_WIDTH), px(CELL_HEIGHT)), sensor.battery, theme, ink)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
         theme, sensor = current_theme(), self.sensor
@@ -326,17 +319,14 @@ class _WornOn(PaintedButton):
         self._site = site
         self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self.paint_veil(painter, QRectF(self.rect()), CHIP_RADIUS)
         if self._site is not None and self._site.side is not None:
             chip = px(CHIP)
             paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
         (word,) = self.painted_texts()
-        word.paint(painter, c)
         side, end = px(CHEVRON), word.needed.right() + px(6)
         middle = QRectF(end, (self.height() - side) / 2 + 1, side, side)
         paint_icon(painter, Icon.CHEVRON, middle, getattr(c, word.tone))
@@ -370,11 +360,9 @@ class _Identify(PaintedButton):
         self.setVisible(is_silent or sensor.can_identify)
         self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self.paint_veil(painter, QRectF(self.rect()), CHIP_RADIUS)
         sensor = self._row.sensor
         side = px(22)

@@ -42,17 +42,7 @@ def stated_of_sensors(
     is_left_to_motion: bool,
     places: Sequence[Site] = LEG_SITES,
 ) -> Stated:
-    """How the sensors are, and what is missing.
-
-    Parameters
-    ----------
-    bared
-        Sites that a sensor was taken off from.
-    next_place
-        Where the sensor that is shaken next goes; None where places are stated otherwise.
-    places
-        Where sensors can be worn.
-    """
+    """State in a sentence how the sensors are, or what is missing; `next_place` None: no shaking."""
     has_pelvis = Site.PELVIS in places
     if silent := [sensor for sensor in sensors if sensor.silent_s > 0]:
         return Icon.WARNING, *_stated_of_silent(silent[0], has_hips=Site.PELVIS in worn), True

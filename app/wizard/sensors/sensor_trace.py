@@ -2,10 +2,10 @@
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPen, QPolygonF
 
 from app.theme.current import current_theme
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD
 from app.wording.translation import tr
 from core.samples import FloatArray
@@ -14,7 +14,7 @@ PIXELS_PER_POINT = 2  # closer ones only cost, and blot
 SPAN_DEG_S = 120.0  # what fills the trace's height, at least: a sensor at rest draws a still line
 
 
-class Trace(QWidget):
+class Trace(Painted):
     """How a sensor turned in the last 5 s: flat at rest, and with a word where it has fallen silent."""
 
     def __init__(self) -> None:
@@ -26,12 +26,7 @@ class Trace(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # so that the row is not painted ten times a second
 
     def show_values(self, values: FloatArray) -> None:
-        """
-        Parameters
-        ----------
-        values : (n,)
-            Angular rate, deg/s, oldest first, at even steps; NaN where nothing was received.
-        """
+        """Show angular rates (n,), deg/s, oldest first at even steps; NaN where nothing was received."""
         self._values = values
         self.update()
 
@@ -47,12 +42,10 @@ class Trace(QWidget):
             self._silence = words
             self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c = theme.colours
-        painter = QPainter(self)
         painter.fillRect(self.rect(), self._ground)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(theme.font(12, SEMIBOLD))
         ink = QColor(c.caution_ink if self._silence else c.ink)
         width = self.width()

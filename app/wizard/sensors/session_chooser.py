@@ -3,46 +3,28 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.line_list import LineList, PatientLine
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
-LINES_AT_LEAST = 1.4  # in sight, so that it is seen that there are more
-LINE = 72
+LEAST_LIST = 101  # a line and a part of the next, so that it is seen that there are more
 
 
-class SessionChooser(Themed):
-    """
-    Signals
-    -------
-    chosen
-        Another session is chosen: its id, or None.
-    opened
-        The id of a session that is to be replayed.
-    folder_pressed
-        A session folder is asked for instead.
-    back_pressed
-        No session is asked for after all.
-    """
-
-    chosen = Signal(object)
-    opened = Signal(object)
-    folder_pressed = Signal()
-    back_pressed = Signal()
+class SessionChooser(QWidget):
+    """`sessions` states which is chosen and which is to be played; `folder` and `back` lead elsewhere."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._title = Text(tr("Choose a session to replay"), 20, SEMIBOLD, wraps=True)
-        self._why = Text(
+        title = Text(tr("Choose a session to replay"), 20, SEMIBOLD, wraps=True)
+        why = Text(
             tr("The session plays as if measured now, but it is a replay. All its results are marked SIMULATED."),
             14,
             tone="ink2",
@@ -57,26 +39,13 @@ class SessionChooser(Themed):
         self._lists = QStackedWidget()
         self._lists.addWidget(self.sessions)
         self._lists.addWidget(self._none)
-        self._card = Card(padding=0)
-        self._heading = QVBoxLayout()
-        self._heading.addWidget(self._title)
-        self._heading.addWidget(self._why)
-        self._heading.addWidget(self.notice)
-        self._card.column.addLayout(self._heading)
-        self._card.column.addWidget(self._lists, 1)
-        self._verbs = QHBoxLayout()
-        self._verbs.addWidget(self.folder)
-        self._verbs.addWidget(self.back)
-        self._verbs.addStretch(1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self._card, 1)
-        self._column.addLayout(self._verbs)
-        self.sessions.chosen.connect(self.chosen)
-        self.sessions.opened.connect(self.opened)
-        self.folder.clicked.connect(self.folder_pressed)
-        self.back.clicked.connect(self.back_pressed)
-        self._apply_theme()
+        card = Card(padding=0)
+        heading = lay_out(QVBoxLayout(), title, why, self.notice, margins=(24, 16, 24, 4), spacing=4)
+        lay_out(card.column, heading, (self._lists, 1))
+        verbs = lay_out(QHBoxLayout(), self.folder, self.back, 1, spacing=12)
+        lay_out(QVBoxLayout(self), (card, 1), verbs, margins=0, spacing=12)
+        scaled(self._none.setContentsMargins, 24, 8, 24, 16)
+        scaled(self.sessions.setMinimumHeight, LEAST_LIST)
         self.show_sessions(())
         self.show_message("")
 
@@ -102,12 +71,3 @@ class SessionChooser(Themed):
         """Say why a session cannot be replayed, above those that may be tried instead; "" takes it back."""
         self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(12))
-        self._verbs.setSpacing(px(12))
-        self._heading.setContentsMargins(px(24), px(16), px(24), px(4))
-        self._heading.setSpacing(px(4))
-        self._none.setContentsMargins(px(24), px(8), px(24), px(16))
-        self.sessions.setMinimumHeight(px(round(LINE * LINES_AT_LEAST)))

@@ -23,21 +23,11 @@ SILENT_S = 0.5
 
 @dataclass(frozen=True, slots=True)
 class ShakingState:
-    """Who is shaken now.
+    """Who is shaken now."""
 
-    Attributes
-    ----------
-    shaken
-        From being recognised until it is calm again.
-    shaken_together
-        Two that were shaken at once, until both are calm; neither counts.
-    count
-        How often a sensor has been recognised: that of the same sensor twice is two.
-    """
-
-    shaken: str | None = None
-    shaken_together: tuple[str, ...] = ()
-    count: int = 0
+    shaken: str | None = None  # from being recognised until it is calm again
+    shaken_together: tuple[str, ...] = ()  # two that were shaken at once, until both are calm; neither counts
+    count: int = 0  # how often a sensor has been recognised: that of the same sensor twice is two
 
 
 @dataclass(slots=True)

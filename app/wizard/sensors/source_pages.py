@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QProgressBar, QVBoxLayout
+from PySide6.QtWidgets import QProgressBar, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 
@@ -29,7 +29,7 @@ class SourceOption:
     is_last: bool = False
 
 
-class NoSource(Themed):
+class NoSource(QWidget):
     """One sentence, the sources that can be opened, and why others are not among them."""
 
     chosen = Signal(str)
@@ -38,21 +38,14 @@ class NoSource(Themed):
         super().__init__()
         self.buttons: list[Button] = []
         self._options: list[SourceOption] = []
-        self._sentence = Text(tr("No sensors yet. Choose where to search."), 20, SEMIBOLD, wraps=True)
-        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        sentence = Text(tr("No sensors yet. Choose where to search."), 20, SEMIBOLD, wraps=True)
+        sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.notice = Notice(size=16)
         self._left_out = Text(size=14, tone="ink2", wraps=True)
         self._left_out.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._left_out.hide()
-        self._row = QVBoxLayout()
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self.notice)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence)
-        self._column.addLayout(self._row)
-        self._column.addWidget(self._left_out)
-        self._column.addStretch(2)
-        self._apply_theme()
+        self._row = lay_out(QVBoxLayout(), spacing=12)
+        lay_out(QVBoxLayout(self), self.notice, 1, sentence, self._row, self._left_out, 2, spacing=24)
 
     def show_message(self, what: str, then: str) -> None:
         """Say why nothing is connected, above the sources that may be tried instead."""
@@ -81,28 +74,21 @@ class NoSource(Themed):
         for number, option in enumerate(options):
             button = Button(option.name, ButtonKind.PRIMARY if number == 0 else ButtonKind.SECONDARY)
             button.clicked.connect(self._on_clicked)
+            scaled(button.setMinimumWidth, 320)
             self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
             button.show()  # at once: what is not in sight yet takes no focus
             self.buttons.append(button)
             if option.key == focused_key:
                 button.setFocus()
         hear_as_laid_out(self)
-        self._apply_theme()
 
     def _on_clicked(self) -> None:
         button = self.sender()
         assert isinstance(button, Button)
         self.chosen.emit(self._options[self.buttons.index(button)].key)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(24))
-        self._row.setSpacing(px(12))
-        for button in self.buttons:
-            button.setMinimumWidth(px(320))
 
-
-class Searching(Themed):
+class Searching(QWidget):
     """What is looked for or read, and the way out."""
 
     def __init__(self) -> None:
@@ -113,19 +99,14 @@ class Searching(Themed):
         self._line.setTextVisible(False)
         self._line.setRange(0, 0)
         self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP)
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence)
-        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(2)
-        self._apply_theme()
+        middle = Qt.AlignmentFlag.AlignHCenter
+        parts = (1, self._sentence, (self._line, 0, middle), (self.stop, 0, middle), 2)
+        lay_out(QVBoxLayout(self), *parts, spacing=20)
+        scaled(self._line.setFixedSize, 320, 8)
+
+    def focus(self) -> None:
+        self.stop.setFocus()
 
     def begin(self, sentence: str) -> None:
         self._sentence.setText(sentence)
         self._line.setAccessibleName(sentence)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(20))
-        self._line.setFixedSize(px(320), px(8))

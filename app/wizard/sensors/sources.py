@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, overload
 
 from app.acquisition.acquisition import Acquisition
+from app.acquisition.dot_fleet import DotFleet, ReceivedDot
 from app.system.known_columns import known_columns
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice
 from app.wording.translation import later, tr, tr_n
@@ -30,7 +31,6 @@ from devices.transport.bluetooth import BluetoothMissingError, own_radio
 from devices.transport.networks import THIS_COMPUTER, own_addresses
 
 if TYPE_CHECKING:
-    from app.acquisition.dot_fleet import DotFleet
     from devices.search import FoundSensor, SearchResult
     from devices.simulation.walker import WalkerSettings
 
@@ -209,10 +209,8 @@ def _open_streams(address: str) -> Acquisition:
     )
 
 
-def fleet_of(sensors: "Sequence[FoundSensor]") -> "DotFleet":
+def fleet_of(sensors: "Sequence[FoundSensor]") -> DotFleet:
     """The DOTs among what was found, to be set up."""
-    from app.acquisition.dot_fleet import DotFleet, ReceivedDot
-
     received = []
     for one in sensors:
         source = one.make()

@@ -16,10 +16,10 @@ from app.wizard.sensors.dot_setup import DotSetup
 from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.sensors.memories_control import MemoriesControl
 from app.wizard.sensors.page import SensorsPage, Way
+from app.wizard.sensors.replays import StoredReplay
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.sensors.sources import SEARCH, WITH_PELVIS
-from app.wizard.sensors.stored_replay import StoredReplay
 from app.wizard.sensors.trace_values import TRACE_S, TraceValues
 from app.wizard.step import Step, StepId
 from app.wizard.worn_sensors import SourceChoice
@@ -78,10 +78,10 @@ class SensorsStep(Step):
             page.assigned.connect(self._visit.sensors.assign)
             page.way_chosen.connect(self._on_way_chosen)
             page.source_chosen.connect(self._on_source_chosen)
-            page.identify_pressed.connect(self._on_identify_pressed)
-            page.reconnect_pressed.connect(self._on_reconnect_pressed)
-            page.stop_pressed.connect(self._on_stop_pressed)
-            page.columns.back_pressed.connect(self._on_asking_left)
+            page.list.identify_pressed.connect(self._on_identify_pressed)
+            page.list.reconnect_pressed.connect(self._reconnect)
+            page.searching.stop.clicked.connect(self._on_stop_pressed)
+            page.columns.back.clicked.connect(self._on_asking_left)
             self.stored.show_on(page.stored)
             self.setup.show_on(page.dots, page.progress)
             self.memories.show_on(page.memories, page.progress)
@@ -203,10 +203,7 @@ class SensorsStep(Step):
             self._on_source_chosen(key)
 
     def _go_on_with_remembered(self) -> None:
-        """Leave the page by itself once all sensors of the last visit have been received at their places for a while.
-
-        Whoever comes back to it stays.
-        """
+        """Leave the page by itself once all remembered sensors were received for a while, but only once."""
         self._remembered_looks = self._remembered_looks + 1 if self._are_all_remembered else 0
         if self._remembered_looks >= REMEMBERED_LOOKS and not self._has_gone_on:
             self._has_gone_on = True
@@ -514,6 +511,3 @@ class SensorsStep(Step):
                 tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake the sensor instead.")
             )
             self._show_rows()
-
-    def _on_reconnect_pressed(self, _sensor: str) -> None:
-        self._reconnect()

@@ -16,12 +16,9 @@ LIMIT_DEG_S = float(np.rad2deg(MAX_SPREAD_RAD_S))  # of the rate's spread: what 
 class StandingView:
     """The standing so far, by the sensors' names.
 
-    Attributes
-    ----------
-    movement_deg_s
-        What each sensor moved in its last quarter of a second, on the scale whose limit is LIMIT_DEG_S: the spread of
-        its rate, or what its specific force or its mean rate would amount to there, whichever is worst. A sensor moves
-        just when it reaches the limit; infinite where too little was received.
+    `movement_deg_s`: what each sensor moved in its last quarter of a second, on the scale whose limit is LIMIT_DEG_S:
+    the spread of its rate, or what its specific force or its mean rate would amount to there, whichever is worst. A
+    sensor moves just when it reaches the limit; infinite where too little was received.
     """
 
     standing: StandingState[str]

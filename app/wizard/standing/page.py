@@ -9,19 +9,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button
 from app.widgets.card import Card
 from app.widgets.field import NumberField
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
+from app.widgets.reading_area import scrolled
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.body import name_of
 from app.wording.translation import capitalised, tr, tr_n
 from core.body import LEG_JOINTS, Joint, Side, Site
@@ -50,18 +51,8 @@ class StandPhase(Enum):
 class StandStillView:
     """What the standing looks like now.
 
-    Attributes
-    ----------
-    movement_deg_s
-        Of the worn sensors, by site, or by name where nobody knows the site yet: from the limit on they move.
-    moved
-        Who made the count begin again last.
-    silent
-        The sensors from which nothing is received.
-    restarts
-        How often it began again by itself.
-    is_read_back
-        Once it is done: whether what was recorded has been read back, and counts.
+    `movement_deg_s`: of the worn sensors, by site, or by name where nobody knows the site yet: from the limit on they
+    move.
     """
 
     phase: StandPhase = StandPhase.READY
@@ -69,15 +60,14 @@ class StandStillView:
     required_s: float = REQUIRED_S
     movement_deg_s: Mapping[str, float] = field(default_factory=dict)
     limit_deg_s: float = math.degrees(MAX_SPREAD_RAD_S)
-    moved: tuple[str, ...] = ()
-    silent: tuple[str, ...] = ()
-    restarts: int = 0
-    is_read_back: bool = True
+    moved: tuple[str, ...] = ()  # who made the count begin again last
+    silent: tuple[str, ...] = ()  # the sensors from which nothing is received
+    restarts: int = 0  # how often it began again by itself
+    is_read_back: bool = True  # once it is done: whether what was recorded has been read back, and counts
 
     @property
     def moving(self) -> tuple[str, ...]:
-        """Sensors that are beyond the limit as it is shown, and for a moment those that were: what is judged is what is
-        shown."""
+        """Sensors at or beyond the limit as shown, and for a moment those that were."""
         is_waiting = self.phase in (StandPhase.READY, StandPhase.COUNTING)
         named = self.moved if is_waiting and self.still_s < MOVED_FOR_S else ()
         now = (name for name, moves in self.movement_deg_s.items() if self.limit_deg_s <= moves < math.inf)
@@ -89,18 +79,12 @@ class StandStillView:
         return bool(self.movement_deg_s) and all(map(math.isfinite, self.movement_deg_s.values()))
 
 
-class StandStillPage(Themed):
+class StandStillPage(QWidget):
     """Words go L then R.
 
-    Signals
-    -------
-    zero_edited
-        Joint and degrees; None where nothing is in the field any more.
-    cannot_stand_pressed, can_stand_pressed
-        The patient cannot, or can after all.
+    `cannot_stand_pressed`, `can_stand_pressed`: the patient cannot, or can after all.
     """
 
-    zero_edited = Signal(object, object)
     cannot_stand_pressed = Signal()
     can_stand_pressed = Signal()
 
@@ -112,19 +96,15 @@ class StandStillPage(Themed):
         self._title = Text(size=TITLE, weight=SEMIBOLD)
         self._how = Text(size=20, tone="ink2", wraps=True)
         self._ring = CountRing()
-        self._heading = Text(tr("Movement now"), size=14, weight=MEDIUM)
         self._limit = Text(size=14, tone="ink2")
         self.bars = MovementBars()
         self.verdict = Notice()
         self._build_count()
         self.zero = _ZeroCard()
-        self.zero.edited.connect(self.zero_edited)
         self.zero.button.clicked.connect(self._on_button_clicked)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self._count, 1)
-        self._row.addWidget(self.zero)
-        self._apply_theme()
-        self._show()
+        self._row = lay_out(QHBoxLayout(self), (self._count, 1), self.zero)
+        on_theme(self._fit)
+        self.set_compact(False)
 
     @property
     def view(self) -> StandStillView:
@@ -144,12 +124,13 @@ class StandStillPage(Themed):
         self._is_compact = is_compact
         self.bars.set_compact(is_compact)
         self.zero.set_compact(is_compact)
-        self._apply_theme()
+        across, down = (16, 10) if is_compact else (24, 20)
+        scaled(self._row.setContentsMargins, across, down, across, down)
+        scaled(self._row.setSpacing, 12 if is_compact else 16)
+        scaled(self._middle.setSpacing, 12 if is_compact else 24)
+        scaled(self._count.column.setContentsMargins, *((16, 10, 16, 10) if is_compact else (24, 18, 24, 18)))
+        self._fit()
         self._show()
-
-    def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
-        """Show the goniometer's angle of each joint that has its sensors; the others have no field to type into."""
-        self.zero.show_zero(zero_deg)
 
     def show_state(self, view: StandStillView) -> None:
         """Show how the standing goes; only what changed is painted again."""
@@ -173,22 +154,11 @@ class StandStillPage(Themed):
         self._fit()
 
     def _build_count(self) -> None:
-        self._above = QHBoxLayout()
-        self._above.addWidget(self._heading, 1)
-        self._above.addWidget(self._limit)
-        self._side = QVBoxLayout()
-        self._side.addStretch(1)
-        self._side.addLayout(self._above)
-        self._side.addWidget(self.bars)
-        self._side.addWidget(self.verdict)
-        self._side.addStretch(1)
-        self._middle = QHBoxLayout()
-        self._middle.addWidget(self._ring, 1)
-        self._middle.addLayout(self._side)
-        column = self._count.column
-        column.addWidget(self._title)
-        column.addWidget(self._how)
-        column.addLayout(self._middle, 1)
+        now = Text(tr("Movement now"), size=14, weight=MEDIUM)
+        above = lay_out(QHBoxLayout(), (now, 1), self._limit, margins=(INSET, 0, INSET, 0))
+        side = lay_out(QVBoxLayout(), 1, above, self.bars, self.verdict, 1, spacing=8)
+        self._middle = lay_out(QHBoxLayout(), (self._ring, 1), side)
+        lay_out(self._count.column, self._title, self._how, (self._middle, 1))
         self._count.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def _on_button_clicked(self) -> None:
@@ -201,61 +171,37 @@ class StandStillPage(Themed):
         bars_width = COMPACT_BARS_WIDTH if self._is_compact else LARGE_BARS_WIDTH if is_large else BARS_WIDTH
         for one in (self.bars, self.verdict):
             one.setFixedWidth(px(bars_width))
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        across, down = (16, 10) if self._is_compact else (24, 20)
-        self._row.setContentsMargins(px(across), px(down), px(across), px(down))
-        self._row.setSpacing(px(12 if self._is_compact else 16))
-        self._middle.setSpacing(px(12 if self._is_compact else 24))
-        self._side.setSpacing(px(8))
-        self._above.setContentsMargins(px(INSET), 0, px(INSET), 0)
-        if self._is_compact:
-            self._count.column.setContentsMargins(px(16), px(10), px(16), px(10))
-            self.zero.column.setContentsMargins(px(16), px(12), px(16), px(12))
-        else:
-            self._count.column.setContentsMargins(px(24), px(18), px(24), px(18))
-            self.zero.column.setContentsMargins(px(20), px(16), px(20), px(20))
         width = px(COMPACT_ZERO_WIDTH if self._is_compact else ZERO_WIDTH)
         self.zero.setFixedWidth(max(width, self.zero.least_width))
-        self._fit()
 
 
 class _ZeroCard(Card):
     """The angles of the patient in standing, and the way round the standing. The fields scroll where they must."""
 
-    edited = Signal(object, object)
+    edited = Signal(object, object)  # joint and degrees; None where nothing is in the field any more
 
     def __init__(self) -> None:
-        self._headings: list[QHBoxLayout] = []
-        self._inside = QWidget()
-        self._column, self._grid = QVBoxLayout(self._inside), QGridLayout()
         super().__init__(padding=20, spacing=12)
+        self._inside = QWidget()
+        self._grid = QGridLayout()
+        scaled(self._grid.setHorizontalSpacing, 12)
+        scaled(self._grid.setVerticalSpacing, 6)
         self._is_compact = False
         self._view = StandStillView()
         self._worn: frozenset[Joint] = frozenset(LEG_JOINTS)
         self.fields: dict[Joint, NumberField] = {}
-        self._column.addWidget(Text(tr("Standing angle"), size=20, weight=SEMIBOLD))
+        named = Text(tr("Standing angle"), size=20, weight=SEMIBOLD)
         explained = tr("Enter 0° if the joint is straight now. With a contracture, enter the goniometer value.")
-        self._column.addWidget(Text(explained, size=14, tone="ink2", wraps=True))
+        how = Text(explained, size=14, tone="ink2", wraps=True)
         self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
         self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
-        self._column.addLayout(self._grid)
         self._why = Text(size=14, tone="ink2", wraps=True)
-        self._column.addWidget(self._why)
-        self._column.addStretch(1)
-        self._scroll = _Fields()
-        self._scroll.setWidget(self._inside)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        lay_out(QVBoxLayout(self._inside), named, how, self._grid, self._why, 1, margins=0, spacing=8)
+        fields = scrolled(self._inside)
+        fields.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
         self.note = Notice(size=14)
         self.button = Button(tr("Patient cannot stand still"))
-        self.column.addWidget(self._scroll, 1)
-        self.column.addWidget(self.note)
-        self.column.addWidget(self.button)
-        self._apply_theme()
+        lay_out(self.column, (fields, 1), self.note, self.button)
         self._show()
 
     @property
@@ -276,10 +222,11 @@ class _ZeroCard(Card):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._apply_theme()
+        scaled(self.column.setContentsMargins, *((16, 12, 16, 12) if is_compact else (20, 16, 20, 20)))
         self._show()
 
     def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
+        """Show the goniometer's angle of each joint that has its sensors; the others have no field to type into."""
         self._worn = frozenset(zero_deg)
         for joint, one in self.fields.items():
             one.set_value(zero_deg.get(joint))
@@ -307,10 +254,9 @@ class _ZeroCard(Card):
 
     def _add_joint(self, name: str, sign: str, label: str, range_deg: tuple[float, float], is_knee: bool) -> None:
         row = self._grid.rowCount()
-        heading = QHBoxLayout()
-        self._headings.append(heading)
-        heading.addWidget(Text(name, size=14, weight=MEDIUM), 1)
-        heading.addWidget(Text(sign, size=12, tone="ink2"), 0, Qt.AlignmentFlag.AlignBottom)
+        words, way = Text(name, size=14, weight=MEDIUM), Text(sign, size=12, tone="ink2")
+        below = Qt.AlignmentFlag.AlignBottom
+        heading = lay_out(QHBoxLayout(), (words, 1), (way, 0, below), margins=(0, 8, 0, 0))
         self._grid.addLayout(heading, row, 0, 1, 2)
         for column, side in enumerate((Side.LEFT, Side.RIGHT)):
             joint = next(joint for joint in LEG_JOINTS if joint.side is side and joint.is_knee == is_knee)
@@ -319,23 +265,6 @@ class _ZeroCard(Card):
             one.reported.connect(self.edited)
             self.fields[joint] = one
             self._grid.addWidget(one, row + 1, column, Qt.AlignmentFlag.AlignTop)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(px(8))
-        for heading in self._headings:
-            heading.setContentsMargins(0, px(8), 0, 0)
-        self._grid.setHorizontalSpacing(px(12))
-        self._grid.setVerticalSpacing(px(6))
-
-
-class _Fields(QScrollArea):
-    """Takes the room there is: what does not fit scrolls here, and not the page."""
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()
 
 
 class _ZeroField(NumberField):

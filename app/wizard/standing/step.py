@@ -58,7 +58,7 @@ class StandStillStep(Step):
     def page(self) -> StandStillPage:
         if self._page is None:
             self._page = StandStillPage()
-            self._page.zero_edited.connect(self._on_zero_edited)
+            self._page.zero.edited.connect(self._on_zero_edited)
             self._page.cannot_stand_pressed.connect(self._on_cannot_stand)
             self._page.can_stand_pressed.connect(self._on_can_stand)
         return self._page
@@ -105,7 +105,7 @@ class StandStillStep(Step):
     def _show_zero(self) -> None:
         zero = self._shown_zero = dict(self._visit.details.zero_rad)
         joints = list(LEG_JOINTS) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
-        self.page.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
+        self.page.zero.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
 
     def leave(self) -> None:
         self._is_entered = False

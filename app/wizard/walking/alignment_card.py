@@ -4,19 +4,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QResizeEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
-from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
+from app.theme.current import current_theme, px, scaled
+from app.theme.ground import Ground, set_ground
+from app.theme.theme import CHIP_RADIUS
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.painted_text import CENTRE, LEFT, PaintedText, height_for
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
+from app.widgets.painted_text import LEFT, PaintedText, height_for
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
+from app.wizard.walking.badge import BADGE, Badge
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.stepper import Stepper
 from app.wording.alignment import change_in_words, direction_words, part_name, turns_words
@@ -25,7 +29,7 @@ from app.wording.translation import figure_text, tr
 from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
 from core.body import Side
 
-BADGE, PADDING, LINE, GAP = 28, 8, 18, 12
+PADDING, LINE, GAP = 8, 18, 12
 LEAST_LIST, LEAST_LIST_COMPACT = 88, 56
 
 
@@ -49,23 +53,18 @@ class AlignmentRow:
 
 
 class AlignmentCard(Card):
-    """Signals
-    -------
-    chosen
-        The number of an alignment from 0, and whether it is to stand beside the one shown.
-    reported
-        Something of the next change was entered: `entry` holds it.
-    """
+    """"""
 
-    chosen = Signal(int, bool)
-    reported = Signal()
+    chosen = Signal(int, bool)  # the number of an alignment from 0, and whether it is to stand beside the one shown
+    reported = Signal()  # something of the next change was entered: `entry` holds it
 
     def __init__(self, entry: ChangeEntry) -> None:
+        super().__init__()
         self._entry = entry
         self._rows: list[_AlignmentRow] = []
         self._list = QWidget()
         self._rows_column = QVBoxLayout(self._list)
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._list)
         self.next_title = Text(size=14, weight=SEMIBOLD, wraps=True)
         self.parts = Choice(tr("Part"))
         self.steppers = {name: Stepper() for name in FIGURES}
@@ -74,10 +73,6 @@ class AlignmentCard(Card):
         self._grid = QGridLayout()
         self.chip = Chip(Side.LEFT)  # until rows are shown
         self._head_row = QWidget()
-        self._head = QHBoxLayout(self._head_row)
-        self._head.setContentsMargins(0, 0, 0, 0)
-        self._side_word = Text(tr("prosthetic"), size=12, tone="ink2")
-        super().__init__()
         for part in ProsthesisPart:
             self.parts.addItem(part_name(part), part)
         self._build()
@@ -157,24 +152,12 @@ class AlignmentCard(Card):
         self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
     def _build(self) -> None:
-        self._head.addWidget(Text(tr("Alignments"), size=16, weight=SEMIBOLD))
-        self._head.addStretch(1)
-        self._head.addWidget(self.chip)
-        self._head.addWidget(self._side_word)
-        self._rows_column.setContentsMargins(0, 0, 0, 0)
-        self._rows_column.setSpacing(4)
-        self._rows_column.addStretch(1)
-        self._scroll.setWidget(self._list)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.column.addWidget(self._head_row)
-        self.column.addWidget(self._scroll, 1)
-        self.column.addWidget(self.next_title)
+        title, word = Text(tr("Alignments"), size=16, weight=SEMIBOLD), Text(tr("prosthetic"), size=12, tone="ink2")
+        lay_out(QHBoxLayout(self._head_row), title, 1, self.chip, word, margins=0)
+        lay_out(self._rows_column, 1, margins=0).setSpacing(4)
         self._grid.setSpacing(8)
         self.set_compact(False)
-        self.column.addLayout(self._grid)
+        lay_out(self.column, self._head_row, (self._scroll, 1), self.next_title, self._grid)
 
     def _connect(self) -> None:
         self.parts.activated.connect(self._on_part_chosen)
@@ -198,7 +181,7 @@ class AlignmentCard(Card):
         self.reported.emit()
 
 
-class _AlignmentRow(Themed):
+class _AlignmentRow(Painted):
     """One alignment; a press shows it, with Shift beside the one shown."""
 
     accessible_role = QAccessible.Role.ListItem
@@ -209,6 +192,10 @@ class _AlignmentRow(Themed):
         super().__init__()
         self._number = number
         self.reported = AlignmentRow("", "", "", (), RowRole.NONE)
+        self._badge = Badge()
+        self._badge.setParent(self)
+        scaled(self._badge.move, PADDING, PADDING + 4)
+        scaled(self.setMinimumWidth, 200)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
 
@@ -219,25 +206,19 @@ class _AlignmentRow(Themed):
         stated = [f"{reported.letter} {reported.title}", reported.note, lines, role]
         self.setAccessibleName(", ".join(filter(None, stated)))
         self.setAccessibleDescription(tr("Key {key}").format(key=str(self._number + 1)))
+        is_shown = reported.role is RowRole.SHOWN
+        set_ground(self, Ground("sunken", inset=0) if is_shown else None)
+        fill, line, tone = ("inv", "", "inv_ink") if is_shown else ("surface", "ink", "ink")
+        self._badge.show_letter(reported.letter, tone, Ground(fill, line, 1.75, CHIP_RADIUS, inset=1))
         self._apply_theme()
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        height = px(2 * PADDING + 2 * LINE) + sum(self._line_heights())
-        return QSize(px(200), height)
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def painted_texts(self) -> list[PaintedText]:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         left, width = px(PADDING + BADGE + GAP), self.width()
-        badge_tone = "inv_ink" if self.reported.role is RowRole.SHOWN else "ink"
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.reported.role]
         aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
         right = QRectF(width - aside, px(PADDING), aside - px(PADDING), px(LINE))
         texts = [
-            PaintedText(self.reported.letter, self._badge, theme.font(14, SEMIBOLD), badge_tone, CENTRE),
             PaintedText(
                 self.reported.title, QRectF(left, px(PADDING), width - left - aside, px(LINE)), theme.font(14, SEMIBOLD)
             ),
@@ -263,17 +244,6 @@ class _AlignmentRow(Themed):
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.pressed.emit(self._number, bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        c, painter = theme.colours, QPainter(self)
-        is_shown = self.reported.role is RowRole.SHOWN
-        if is_shown:
-            theme.paint_box(painter, QRectF(self.rect()), c.sunken, None, 0, CONTROL_RADIUS)
-        fill, line = (c.inv, None) if is_shown else (c.surface, c.ink)
-        theme.paint_box(painter, self._badge.adjusted(1, 1, -1, -1), fill, line, 1.75, CHIP_RADIUS)
-        for text in self.painted_texts():
-            text.paint(painter, c)
-
     def _line_words(self) -> list[str]:
         return [f"{name}: {words}" for name, words in self.reported.lines]
 
@@ -282,11 +252,6 @@ class _AlignmentRow(Themed):
         width = max(self.width() - px(2 * PADDING + BADGE + GAP), px(140))
         return [max(px(LINE), height_for(words, font, width)) for words in self._line_words()]
 
-    @property
-    def _badge(self) -> QRectF:
-        px = current_theme().px
-        return QRectF(px(PADDING), px(PADDING + 4), px(BADGE), px(BADGE))
-
     def _apply_theme(self) -> None:
-        self.setFixedHeight(self.sizeHint().height())
+        self.setFixedHeight(px(2 * PADDING + 2 * LINE) + sum(self._line_heights()))
         self.update()

@@ -26,15 +26,9 @@ if TYPE_CHECKING:
 
 
 class Bench(QObject):
-    """Knows the visit and no page.
+    """Knows the visit and no page."""
 
-    Signals
-    -------
-    changed
-        Something else is to be shown.
-    """
-
-    changed = Signal()
+    changed = Signal()  # something else is to be shown
 
     def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -55,10 +49,7 @@ class Bench(QObject):
 
     @property
     def is_offered(self) -> bool:
-        """Whether the latest walk that counts was one with an alignment of a prosthesis.
-
-        After one that is called otherwise nobody knows which alignment the prosthesis is in.
-        """
+        """Whether the latest counting walk had an alignment; after any other walk the setting is unknown."""
         kept = [one.details.condition for one in self._visit.recordings.walks if one.details.is_kept]
         return self.side is not None and bool(kept) and is_alignment(kept[-1])
 

@@ -6,6 +6,7 @@ from app.summary.measures import FITTED
 from app.summary.numbers_in_words import DAGGER, MARKS, judged_in_words
 from app.theme.current import px
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD, Text
@@ -28,14 +29,11 @@ class BenchDifferences(Card):
     """Grey is the error; what is beyond it has a circle."""
 
     def __init__(self) -> None:
+        super().__init__(padding=PADDING)
         self.title = Text(size=16, weight=SEMIBOLD)
         self.table = CellTable(tr("Differences"), row=ROW, head=HEAD)
         self.no_proof = Text(tr(NO_PROOF), size=12, tone="ink2", wraps=True)
-        super().__init__(padding=PADDING)
-        self.column.addWidget(self.title)
-        self.column.addWidget(self.table)
-        self.column.addStretch(1)
-        self.column.addWidget(self.no_proof)
+        lay_out(self.column, self.title, self.table, 1, self.no_proof)
 
     @property
     def needed(self) -> int:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
@@ -12,13 +12,13 @@ from app.results.compared_words import not_reported_in_words
 from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
@@ -47,19 +47,10 @@ class BenchState:
     is_simulated: bool
 
 
-class BenchView(Themed):
-    """Three cards; where they have not all room beside one another, one at a time.
-
-    Signals
-    -------
-    chosen, reported
-        As of `AlignmentCard`.
-    """
+class BenchView(QWidget):
+    """Three cards; where they have not all room beside one another, one at a time."""
 
     accessible_role = QAccessible.Role.Grouping
-
-    chosen = Signal(int, bool)
-    reported = Signal()
 
     def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()
@@ -76,11 +67,8 @@ class BenchView(Themed):
         self._curves = QWidget()
         self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
-        self.alignments.chosen.connect(self.chosen)
-        self.alignments.reported.connect(self.reported)
         self.tabs.chosen.connect(self._arrange)
-        self._apply_theme()
-        self._arrange()
+        on_theme(self._arrange)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -102,21 +90,14 @@ class BenchView(Themed):
         self._show_curves(state)
         self._arrange()
 
-    def show_entry(self, title: str) -> None:
-        self.alignments.show_entry(title)
-
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
         self.alignments.set_compact(is_compact)
-        self._apply_theme()
+        self.first.set_size(16 if is_compact else 20)
         self._arrange()
 
     def fit(self, room: int) -> None:
-        """Arrange the cards for this width, px of the screen.
-
-        It is the page's and not the bench's own: inside the page's scroll area the cards widen the bench, so an
-        arrangement that went by its width could widen or narrow it into the other one, and back, without end.
-        """
+        """Arrange the cards for the page's width, px; the bench's own width depends on the arrangement."""
         self._room = room
         self._arrange()
 
@@ -149,24 +130,13 @@ class BenchView(Themed):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Alignment"))
-        self._curves_column = QBoxLayout(DOWN, self._curves)
-        self._curves_column.setContentsMargins(0, 0, 0, 0)
-        words = QVBoxLayout()
+        self._curves_column = lay_out(QBoxLayout(DOWN, self._curves), margins=0, spacing=12)
+        words = lay_out(QVBoxLayout(), self.first, self.then)
         words.setSpacing(2)
-        words.addWidget(self.first)
-        words.addWidget(self.then)
-        self._head = QHBoxLayout()
-        self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._head.addLayout(words, 1)
-        self._row = QHBoxLayout()
-        self._row.addWidget(self.alignments)
-        self._row.addWidget(self._curves, 1)
-        self._row.addWidget(self.differences)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(self._head)
-        self._column.addWidget(self.tabs)
-        self._column.addLayout(self._row, 1)
+        mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
+        head = lay_out(QHBoxLayout(), mark, (words, 1), spacing=12)
+        row = lay_out(QHBoxLayout(), self.alignments, (self._curves, 1), self.differences, spacing=BETWEEN)
+        lay_out(QVBoxLayout(self), head, self.tabs, (row, 1), margins=0, spacing=12)
 
     def _arrange(self) -> None:
         px, choice = current_theme().px, self.tabs.choice
@@ -186,12 +156,3 @@ class BenchView(Themed):
             is_fixed = width and not is_tabbed
             card.setMinimumWidth(width if is_fixed else 0)
             card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.first.set_size(16 if self._is_compact else 20)
-        self._column.setSpacing(px(12))
-        self._row.setSpacing(px(BETWEEN))
-        self._head.setSpacing(px(12))
-        self._curves_column.setSpacing(px(12))
-        self._arrange()

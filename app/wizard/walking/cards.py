@@ -7,10 +7,11 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.charts import Hairline
 from app.wizard.walking.label_chooser import LabelChooser
@@ -29,54 +30,37 @@ class WalkFigures(Card):
     """Strides and cadence, to be read from across the room."""
 
     def __init__(self) -> None:
+        super().__init__(spacing=0.5)  # a pixel, at any size
         self._strides = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._cadence = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._counts = {side: Text("0", size=18, weight=MEDIUM) for side in Side}
         self._chips = {side: Chip(side) for side in Side}
         self._line = Hairline()
         self._unit = Text(tr("steps/min"), size=14, tone="ink2")
-        self._stride_row, self._cadence_row, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(DOWN)
-        self._both = QBoxLayout(DOWN)
-        self._pairs: list[QHBoxLayout] = []
-        self._parts: list[QBoxLayout] = []
         self.in_words = ""
-        super().__init__(spacing=0)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        for side in Side:
-            pair = QHBoxLayout()
-            pair.addWidget(self._chips[side])
-            pair.addWidget(self._counts[side])
-            self._pairs.append(pair)
-            self._sides.addLayout(pair)
-        self._stride_row.addWidget(self._strides)
-        self._stride_row.addStretch(1)
-        self._stride_row.addLayout(self._sides)
-        self._cadence_row.addWidget(self._cadence)
-        self._cadence_row.addWidget(self._unit, 0, Qt.AlignmentFlag.AlignBottom)
-        self._cadence_row.addStretch(1)
-        for title, row in ((tr("Strides"), self._stride_row), (tr("Cadence"), self._cadence_row)):
-            part = QBoxLayout(DOWN)
-            part.addWidget(Text(title, size=14, tone="ink2"))
-            part.addLayout(row)
-            self._parts.append(part)
-        self._both.addLayout(self._parts[0], 1)
-        self._both.addWidget(self._line)
-        self._both.addLayout(self._parts[1], 1)
+        pairs = [lay_out(QHBoxLayout(), self._chips[side], self._counts[side], spacing=8) for side in Side]
+        self._sides = lay_out(QBoxLayout(DOWN), *pairs, spacing=8)
+        unit = self._unit, 0, Qt.AlignmentFlag.AlignBottom
+        rows = {
+            tr("Strides"): lay_out(QHBoxLayout(), self._strides, 1, self._sides, spacing=8),
+            tr("Cadence"): lay_out(QHBoxLayout(), self._cadence, unit, 1, spacing=8),
+        }
+        self._parts = [lay_out(QBoxLayout(DOWN), Text(word, size=14, tone="ink2"), row) for word, row in rows.items()]
+        self._both = lay_out(QBoxLayout(DOWN), (self._parts[0], 1), self._line, (self._parts[1], 1))
         self.column.addLayout(self._both)
-        self._apply_theme()
+        self.set_compact(is_compact=False, is_narrow=False)
+        on_theme(self._reserve_room)
 
     def show_figures(self, strides: Mapping[Side, int], cadence_steps_min: float) -> None:
         shown = str(max(strides.values())) if strides else NO_FIGURE
         cadence = f"{cadence_steps_min:.0f}" if math.isfinite(cadence_steps_min) else NO_FIGURE
-        for label, text in ((self._strides, shown), (self._cadence, cadence)):
-            if label.text() != text:
-                label.setText(text)
+        self._strides.setText(shown)
+        self._cadence.setText(cadence)
         for side in Side:
             self._chips[side].setVisible(side in strides)
             self._counts[side].setVisible(side in strides)
-            count = str(strides.get(side, 0))
-            if self._counts[side].text() != count:
-                self._counts[side].setText(count)
+            self._counts[side].setText(str(strides.get(side, 0)))
         stated = [tr("{count} strides.").format(count=shown)] if strides else []
         words = {Side.LEFT: tr("Left {count}."), Side.RIGHT: tr("Right {count}.")}
         stated += [words[side].format(count=strides[side]) for side in Side if side in strides]
@@ -94,51 +78,33 @@ class WalkFigures(Card):
         """Stand in one line; where it is narrow, with the words above the figures."""
         self._both.setDirection(ACROSS if is_compact else DOWN)
         self._sides.setDirection(ACROSS if is_compact else DOWN)
+        scaled(self._both.setSpacing, 32 if is_compact else 4)
         for part in self._parts:
             part.setDirection(ACROSS if is_compact and not is_narrow else DOWN)
+            scaled(part.setSpacing, 12 if part.direction() is ACROSS else 0)
         self._line.setVisible(not is_compact)
-        self._padding = 8.0 if is_compact else 16.0
-        self._apply_theme()
+        side = 8 if is_compact else 16
+        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
 
     def _reserve_room(self) -> None:
         """As wide as the figures get, so that nothing jumps."""
-        for label in (self._strides, self._cadence):
+        for label in (self._strides, self._cadence, *self._counts.values()):
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
-        for label in self._counts.values():
-            label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for row in (self._stride_row, self._cadence_row, *self._pairs):
-            row.setSpacing(px(8))
-        self._sides.setSpacing(px(8))
-        self._both.setSpacing(px(32) if self._both.direction() is ACROSS else px(4))
-        for part in self._parts:
-            part.setSpacing(px(12) if part.direction() is ACROSS else 0)
-        self._reserve_room()
 
 
 class StoppedCard(Card):
     """What was just recorded, and the one question about it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self._facts = Text(size=14, tone="ink2", wraps=True)
         self.keep = Button("", ButtonKind.PRIMARY, key="I")
         self.discard = Button(tr("Exclude"), ButtonKind.SECONDARY, key="X")
-        self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
-        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(self._title)
-        words.addWidget(self._facts)
-        self._row.addLayout(words, 1)
-        self._verbs.addStretch(1)
-        self._verbs.addWidget(self.discard)
-        self._verbs.addWidget(self.keep)
-        self._row.addLayout(self._verbs)
+        words = lay_out(QVBoxLayout(), self._title, self._facts, spacing=0)
+        verbs = lay_out(QHBoxLayout(), 1, self.discard, self.keep, spacing=12)
+        self._row = lay_out(QBoxLayout(ACROSS), (words, 1), verbs, spacing=12)
         self.column.addLayout(self._row)
 
     def show_walk(self, walk: WalkRow | None, facts: str) -> None:
@@ -160,11 +126,6 @@ class StoppedCard(Card):
         """Put the buttons below the words where the width is too small for both."""
         self._row.setDirection(DOWN if is_narrow else ACROSS)
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        for row in (self._row, self._verbs):
-            row.setSpacing(px(12))
-
 
 class EmptyCard(Card):
     """Before the first walk: what to do, and why to stand a moment."""
@@ -172,6 +133,7 @@ class EmptyCard(Card):
     accessible_role = QAccessible.Role.Note
 
     def __init__(self) -> None:
+        super().__init__()
         self._what = Text(tr("Choose a condition, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
         self._then = Text(
             tr("Stand still for two seconds first: ankle angles are then correct from the start."),
@@ -179,30 +141,22 @@ class EmptyCard(Card):
             tone="ink2",
             wraps=True,
         )
-        super().__init__()
         self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.column.addStretch(1)
-        self.column.addWidget(self._what)
-        self.column.addWidget(self._then)
-        self.column.addStretch(1)
+        lay_out(self.column, 1, self._what, self._then, 1)
 
 
 class NextCard(Card):
     """What the next walk is called and which test it is, beside the button that starts it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._title = Text(size=14, weight=MEDIUM, tone="ink2")
         self.chooser = LabelChooser()
         self.test = TimedChooser()
-        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        head = QHBoxLayout()
-        head.addWidget(self._title, 1)
-        head.addWidget(self.test)
-        self.column.addLayout(head)
-        self.column.addWidget(self.chooser)
+        lay_out(self.column, lay_out(QHBoxLayout(), (self._title, 1), self.test), self.chooser)
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()

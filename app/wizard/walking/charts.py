@@ -2,22 +2,23 @@
 
 import math
 
-from PySide6.QtCore import QRectF, QSize
-from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QAccessible, QColor, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
-from app.plots.phase_lanes import Swatch
-from app.theme.current import current_theme, px
+from app.plots.phase_lanes import LEGEND, Swatch
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.live_strip import LiveStrip
 from app.wizard.walking.readout import WalkingReadout
 from app.wording.translation import tr
 from core.body import Side
-from core.gait.phases import Phase
 
 HIP_DEG = (-20.0, 50.0)
 HIP_TICK_DEG, KNEE_TICK_DEG, ANKLE_TICK_DEG = 20, 30, 20
@@ -30,6 +31,7 @@ class WalkingCharts(Card):
     accessible_role = QAccessible.Role.Chart
 
     def __init__(self) -> None:
+        super().__init__(spacing=4)
         self.hip = LiveStrip(HIP_DEG, HIP_TICK_DEG)
         self.knee = LiveStrip(KNEE_DEG, KNEE_TICK_DEG)
         self.ankle = LiveStrip(ANKLE_DEG, ANKLE_TICK_DEG)
@@ -41,17 +43,13 @@ class WalkingCharts(Card):
         self._has_hips = False
         self._keys = {side: SideKey(side) for side in Side}
         self._is_compact = False
-        self._legend_pairs: list[QHBoxLayout] = []
         self._legend_gaps: list[QSpacerItem] = []  # they give way where words are long
         self._lines = Hairline(), Hairline()
         self._hip_line = Hairline()
-        self._heads: list[QHBoxLayout] = []
-        self._legend, self._key_row = QHBoxLayout(), QHBoxLayout()
         self._phases_title = Text(tr("Gait phases"), size=14, tone="ink2")
-        super().__init__(spacing=4)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._build()
-        self._apply_theme()
+        on_theme(self._keep_gaps)
 
     def set_simulated(self, is_simulated: bool) -> None:
         for mark in self._simulated:
@@ -71,8 +69,9 @@ class WalkingCharts(Card):
             widget.setVisible(not is_compact)
         self._hip_line.setVisible(self._has_hips and not is_compact)
         self.lanes.set_compact(is_compact)
-        self._padding, self._spacing = (8.0, 2.0) if is_compact else (16.0, 4.0)
-        self._apply_theme()
+        side = 8 if is_compact else 16
+        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
+        scaled(self.column.setSpacing, 2 if is_compact else 4)
 
     def set_seconds(self, seconds: float) -> None:
         for chart in (self.hip, self.knee, self.ankle, self.lanes):
@@ -100,101 +99,66 @@ class WalkingCharts(Card):
     def _say_provisional(self, sides: list[Side]) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until five strides")
         stated = words.format(sides=", ".join(side.letter for side in sides)) if sides else ""
-        if stated != self._provisional.text():
-            self._provisional.setText(stated)
+        self._provisional.setText(stated)
 
     def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until calibrated by walking")
         stated = words.format(sides=", ".join(side.letter for side in provisional)) if provisional else ""
         if not are_known:
             stated = tr("not known yet") if self._is_compact else tr("not known before the first strides")
-        if stated != self._hip_note.text():
-            self._hip_note.setText(stated)
+        self._hip_note.setText(stated)
 
     def _build(self) -> None:
         hip = self._head(Text(tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
-        hip.addStretch(1)
-        hip.addWidget(self._hip_note)
-        hip.setContentsMargins(0, 0, 0, 0)
-        self._hip_head.setLayout(hip)
+        self._hip_head.setLayout(lay_out(hip, 1, self._hip_note, margins=0))
         knee = self._head(Text(tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
-        knee.addStretch(1)
-        knee.addLayout(self._key_row)
-        for key in self._keys.values():
-            self._key_row.addWidget(key)
+        lay_out(knee, 1, lay_out(QHBoxLayout(), *self._keys.values(), spacing=20))
         ankle = self._head(Text(tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
-        ankle.addStretch(1)
-        ankle.addWidget(self._provisional)
-        phases = self._head(self._phases_title, "")
-        phases.addStretch(1)
-        words = (
-            (Phase.LOADING, tr("Loading")),
-            (Phase.FOOT_FLAT, tr("Foot flat")),
-            (Phase.PRE_SWING, tr("Pre-swing")),
-            (Phase.SWING, tr("Swing")),
-        )
-        for phase, word in words:
-            pair = QHBoxLayout()
-            pair.addWidget(Swatch(phase))
-            pair.addWidget(Text(word, size=12, tone="ink2"))
-            if self._legend_pairs:
+        lay_out(ankle, 1, self._provisional)
+        legend = lay_out(QHBoxLayout(), spacing=6)
+        for phase, word in LEGEND:
+            if legend.count():
                 self._legend_gaps.append(QSpacerItem(0, 0, QSizePolicy.Policy.Maximum))
-                self._legend.addItem(self._legend_gaps[-1])
-            self._legend.addLayout(pair)
-            self._legend_pairs.append(pair)
-        phases.addLayout(self._legend)
-        self.column.addWidget(self._hip_head)
-        self.column.addWidget(self.hip, HIP_SHARE)
-        self.column.addWidget(self._hip_line)
-        self.column.addLayout(knee)
-        self.column.addWidget(self.knee, KNEE_SHARE)
-        self.column.addWidget(self._lines[0])
-        self.column.addLayout(ankle)
-        self.column.addWidget(self.ankle, ANKLE_SHARE)
-        self.column.addWidget(self._lines[1])
-        self.column.addLayout(phases)
-        self.column.addWidget(self.lanes)
+                legend.addItem(self._legend_gaps[-1])
+            legend.addLayout(lay_out(QHBoxLayout(), Swatch(phase), Text(tr(word), size=12, tone="ink2"), spacing=6))
+        lay_out(
+            self.column,
+            self._hip_head,
+            (self.hip, HIP_SHARE),
+            self._hip_line,
+            knee,
+            (self.knee, KNEE_SHARE),
+            self._lines[0],
+            ankle,
+            (self.ankle, ANKLE_SHARE),
+            self._lines[1],
+            lay_out(self._head(self._phases_title, ""), 1, legend),
+            self.lanes,
+        )
         self.set_simulated(is_simulated=False)
         self.set_hips(has_hips=False)
 
     def _head(self, title: Text, sign: str) -> QHBoxLayout:
-        head = QHBoxLayout()
-        head.addWidget(title)
-        if sign:
-            head.addWidget(Text(sign, size=12, tone="ink2"))
         mark = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        head.addWidget(mark)
         self._simulated.append(mark)
-        self._heads.append(head)
-        return head
+        signs = [Text(sign, size=12, tone="ink2")] if sign else []
+        return lay_out(QHBoxLayout(), title, *signs, mark, spacing=8)
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for head in self._heads:
-            head.setSpacing(px(8))
-        self._key_row.setSpacing(px(20))
-        self._legend.setSpacing(px(6))
+    def _keep_gaps(self) -> None:
         for gap in self._legend_gaps:
             gap.changeSize(px(14), 0, QSizePolicy.Policy.Maximum)
-        for pair in self._legend_pairs:
-            pair.setSpacing(px(6))
 
 
-class Hairline(QWidget):
+class Hairline(Painted):
     """A line across, between things that belong together."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedHeight, 9)
 
-    def sizeHint(self) -> QSize:
-        return QSize(1, px(9))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        height = px(1)
-        line = QRectF(0, (self.height() - height) // 2, self.width(), height)
+    def draw(self, painter: QPainter) -> None:
+        line = QRectF(0, (self.height() - px(1)) // 2, self.width(), px(1))
         painter.fillRect(line, QColor(current_theme().colours.line))
 
 

@@ -89,17 +89,11 @@ class WalkingEstimator:
         self.state = WalkingReadout()
 
     def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
-        """Go over to another calibration without a jump, from the next update on; not of a joint that had none.
-
-        From any thread.
-        """
+        """Blend to another calibration from the next update on; only for calibrated joints. Thread-safe."""
         self._wishes.append((joint, calibration))
 
     def find_hips(self, hips: Mapping[Joint, HipIdentification]) -> None:
-        """Show hips that were not known before, and go over to other frames of the others without a jump.
-
-        From any thread, from the next update on.
-        """
+        """Show newly found hips and blend others to new frames, from the next update on. Thread-safe."""
         self._hips.append(hips)
 
     def count_from(self, time_s: float) -> None:
@@ -272,10 +266,7 @@ class _Foot:
             self._go_over(change)
 
     def strides_since(self, time_s: float, kept_from_s: float) -> int:
-        """Two contacts that follow each other are a stride; farther apart than MAX_STRIDE_S, a pause.
-
-        Contacts before `kept_from_s` are forgotten: who asks for another `time_s` than before has those since then.
-        """
+        """Count strides since `time_s`, contacts up to MAX_STRIDE_S apart; contacts before `kept_from_s` go."""
         if time_s != self._from_s:
             self._from_s, self._passed = time_s, 0
             self.is_doubtful = False

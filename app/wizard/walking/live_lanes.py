@@ -11,19 +11,17 @@ from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.text import MEDIUM
-from app.widgets.themed import Themed
-from app.wizard.walking.live_strip import SHOWN_S
 from app.wizard.walking.readout import LiveLane, PhaseSpan
-from app.wizard.walking.scrolling_picture import ScrollingPicture
+from app.wizard.walking.scrolling_picture import Scrolling, ScrollingPicture
 from app.wording.translation import tr
 from core.body import Side
 
@@ -33,37 +31,24 @@ TICK_S = 2.0
 LEAST_WIDTH = 320
 
 
-class LiveLanes(Themed):
+class LiveLanes(Scrolling):
     """Left above right over a time axis that ends now."""
 
     def __init__(self) -> None:
         super().__init__()
         self._between, self._axis_height = BETWEEN, AXIS_HEIGHT
-        self._seconds = SHOWN_S
-        self._now_s = 0.0
         self._lanes: Mapping[Side, LiveLane] = {}
-        self._picture: ScrollingPicture | None = None
         self._drawn: Mapping[Side, tuple[PhaseSpan, ...]] = {}
-        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
-
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
 
     def set_compact(self, is_compact: bool) -> None:
         self._between = BETWEEN_COMPACT if is_compact else BETWEEN
         self._axis_height = AXIS_HEIGHT_COMPACT if is_compact else AXIS_HEIGHT
-        self._apply_theme()
-
-    def set_seconds(self, seconds: float) -> None:
-        """Set how much time is in sight."""
-        if seconds != self._seconds:
-            self._seconds = seconds
-            self.redraw()
+        self.updateGeometry()
+        self.redraw()
 
     def show_lanes(self, now_s: float, lanes: Mapping[Side, LiveLane]) -> None:
         """Draw up to `now_s`. A side that is left out has no lane, as on a leg without sensors."""
@@ -75,15 +60,6 @@ class LiveLanes(Themed):
     def clear(self) -> None:
         self._lanes = {}
         self.redraw()
-
-    def redraw(self) -> None:
-        """Draw everything again, the next time it is in sight."""
-        self._picture = None
-        self.update()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._picture = None
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
@@ -100,19 +76,15 @@ class LiveLanes(Themed):
     @property
     def _place(self) -> QRectF:
         """Of the lanes, in px of the widget."""
-        px = current_theme().px
         width = max(self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), 1)
         return QRectF(px(AXIS_WIDTH), 0, width, 2 * px(LANE) + px(self._between))
 
     def _top(self, side: Side) -> int:
-        px = current_theme().px
         return 0 if side is Side.LEFT else px(LANE) + px(self._between)
 
     def _up_to_date(self, place: QRectF, ratio: float) -> ScrollingPicture:
         columns, rows = round(place.width() * ratio), round(place.height() * ratio)
-        picture = self._picture
-        if picture is None or (picture.columns, picture.rows) != (columns, rows):
-            picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
+        picture = self._picture_of(columns, rows)
         from_x = picture.advance(self._now_s)
         first_s = picture.time_at(0)
         seen = {side: tuple(_since(first_s, lane.spans)) for side, lane in self._lanes.items()}
@@ -172,7 +144,7 @@ class LiveLanes(Themed):
     def _paint_frame(self, painter: QPainter) -> None:
         """Chips and time axis, which stand still."""
         theme, place = current_theme(), self._place
-        c, px = theme.colours, theme.px
+        c = theme.colours
         painter.fillRect(self.rect(), QColor(c.surface))
         chip = px(CHIP)
         for side in self._lanes or Side:
@@ -189,10 +161,6 @@ class LiveLanes(Themed):
             painter.setPen(QColor(c.ink2))
             label = QRectF(left, top + px(TICK), width, self.height() - top - px(TICK))
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, stated)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.redraw()
 
 
 def _since(first_s: float, spans: tuple[PhaseSpan, ...]) -> Iterator[PhaseSpan]:

@@ -28,15 +28,9 @@ LOOKED_BACK_S = 29.0  # of a walk that goes on; the ring buffer holds a second m
 
 
 class LivePreview(QObject):
-    """Knows the visit and no page. `shown`: the latest of the walk that goes on or has ended, with all its strides.
+    """Knows the visit and no page. `shown`: the latest of the walk that goes on or has ended, with all its strides."""
 
-    Signals
-    -------
-    renewed
-        Another WalkingEstimator works from now on, before it is given samples; None: none does.
-    """
-
-    renewed = Signal(object)
+    renewed = Signal(object)  # another WalkingEstimator works from now on, before it is given samples; None: none does
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)

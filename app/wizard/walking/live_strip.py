@@ -11,24 +11,22 @@ from itertools import pairwise
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QResizeEvent, QShowEvent
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QShowEvent
 from PySide6.QtWidgets import QWidget
 
-from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
-from app.plots.angle_chart import AngleAxis
+from app.charts.axes import range_for
+from app.plots.angle_chart import FOOT, AngleAxes
 from app.theme.current import current_theme, px
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
-from app.wizard.walking.scrolling_picture import ScrollingPicture
+from app.wizard.walking.scrolling_picture import Scrolling, ScrollingPicture
 from app.wording.translation import tr
 from core.body import Side
 from core.samples import FloatArray
 
 LEAST_SIZE = (320, 40)  # what can just be read; the page gives more where it has more
-FOOT = 6  # under the axis' lowest tick, whose figure is half below it
 CURVE_PX, THIN_PX = 2.5, 1.25
-SHOWN_S = 8.0
 KEPT_S = 15.0  # more than any width shows
 ROOM = 8192  # rows: twenty seconds at 400 Hz; a faster sensor's take more
 DEG_PER_RAD = 180 / np.pi
@@ -47,32 +45,19 @@ class MissingSpan:
     end_s: float | None
 
 
-class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+class LiveStrip(AngleAxes):
     """Axes that stay `fixed_deg`, widened by tens where a walk leaves them, and kept so until the next one.
 
     `tick_deg` is what two figures of the axis lie apart.
     """
 
     def __init__(self, fixed_deg: tuple[float, float], tick_deg: float) -> None:
-        super().__init__(useOpenGL=False)
+        super().__init__(pg.AxisItem("bottom"), has_mouse=False)
         self._tick_deg = tick_deg
-        for part in (self, self.viewport()):
-            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._view = pg.ViewBox(enableMenu=False, enableMouse=False)
-        self._axis, self._base = AngleAxis("left"), pg.AxisItem("bottom")
-        self._layout = pg.GraphicsLayout()
-        self._layout.setSpacing(0)
-        self._layout.addItem(self._axis, 0, 0)
-        self._layout.addItem(self._view, 0, 1)
-        self._layout.addItem(self._base, 1, 1)
-        self._axis.linkToView(self._view)
-        self._view.setDefaultPadding(0.0)
-        self._view.disableAutoRange()
-        self._base.setStyle(showValues=False)
-        self._base.setTicks([])  # only its line
-        self.setCentralItem(self._layout)
+        self._beneath.setStyle(showValues=False)
+        self._beneath.setTicks([])  # only its line
         self._history = _History(fixed_deg, self.viewport())
-        self._view.sigResized.connect(self._on_view_resized)
+        self.view_box.sigResized.connect(self._on_view_resized)
         self._set_range()
         self._apply_theme()
 
@@ -85,12 +70,8 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         """Where a leg that is shown has had no angle for longer than a moment."""
         return self._history.missing
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
-
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return QSize(*map(px, LEAST_SIZE))
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -110,41 +91,27 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
 
     def _on_view_resized(self) -> None:
         self._history.setGeometry(
-            self._view.mapRectToScene(self._view.rect()).toRect()
+            self.view_box.mapRectToScene(self.view_box.rect()).toRect()
         )  # a scene's units are our pixels
         self._set_range()
 
     def _set_range(self) -> None:
         lowest, highest = self.range_deg
-        self._view.setYRange(lowest, highest, padding=0)
-        room = self._view.height() / px(LEAST_BETWEEN_TICKS)
+        self.view_box.setYRange(lowest, highest, padding=0)
+        room = self.view_box.height() / px(LEAST_BETWEEN_TICKS)
         step = self._tick_deg
         while step < highest - lowest and (highest - lowest) / step > room:
             step *= 2
-        self._axis.setTickSpacing(levels=[(step, 0)])
+        self._angle_axis.setTickSpacing(levels=[(step, 0)])
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self._history.update()
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
-
     def _apply_theme(self) -> None:
-        theme = current_theme()
-        c = theme.colours
-        self.setBackground(c.surface)
-        self._axis.setWidth(theme.px(AXIS_WIDTH))
-        self._base.setHeight(theme.px(FOOT))
-        for axis in (self._axis, self._base):
-            axis.setPen(theme.pen(c.control, 1))
-        self._axis.setTextPen(QColor(c.ink2))
-        self._axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
-        self._layout.setContentsMargins(0, theme.px(FOOT), theme.px(RIGHT_MARGIN), 0)
+        super()._apply_theme()
+        self._beneath.setHeight(px(FOOT))
         self._set_range()
-        self._history.redraw()
         self.updateGeometry()
 
 
@@ -233,37 +200,24 @@ class _Trace:
         return pieces
 
 
-class _History(QWidget):
+class _History(Scrolling):
     """The moving part, over the view of the axes. Nothing is drawn while it is out of sight."""
 
     def __init__(self, fixed_deg: tuple[float, float], parent: QWidget) -> None:
         super().__init__(parent)
-        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # the scene beneath is not painted for it
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._fixed = self.range_deg = fixed_deg
-        self._seconds = SHOWN_S
         self._pens: dict[tuple[Side, bool, float], QPen] = {}
-        self._picture: ScrollingPicture | None = None
-        self._now_s, self._began_s = 0.0, np.nan
+        self._began_s = np.nan
         self._traces: dict[Side, _Trace] = {}
         self._dirty_s = np.inf  # what is later must be drawn again
         self._drawn: tuple[MissingSpan, ...] = ()
         self.missing: tuple[MissingSpan, ...] = ()
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self.redraw()
-
-    def set_seconds(self, seconds: float) -> None:
-        if seconds != self._seconds:
-            self._seconds = seconds
-            self.redraw()
-
     def redraw(self) -> None:
         """Draw everything again from the history, the next time it is in sight."""
-        self._picture = None
         self._pens = {}
-        self.update()
+        super().redraw()
 
     def clear(self) -> None:
         self._traces, self._began_s, self.missing = {}, np.nan, ()
@@ -302,9 +256,8 @@ class _History(QWidget):
     def _up_to_date(self, ratio: float) -> ScrollingPicture:
         """Bring the picture to the present: what is new, what changed since, or all of it."""
         columns, rows = (max(1, round(length * ratio)) for length in (self.width(), self.height()))
-        picture = self._picture
-        if picture is None or (picture.columns, picture.rows) != (columns, rows):
-            picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
+        before, picture = self._picture, self._picture_of(columns, rows)
+        if picture is not before:
             for trace in self._traces.values():
                 trace.measure(0, *self._scales(picture))
         from_x = picture.advance(self._now_s)
@@ -344,7 +297,6 @@ class _History(QWidget):
     def _paint_words(self, painter: QPainter, picture: ScrollingPicture, ratio: float) -> None:
         """Say in each box who is missing, as far as the words have room; while it lasts they take it."""
         theme = current_theme()
-        px = theme.px
         painter.setFont(theme.font(12, MEDIUM))
         metrics = painter.fontMetrics()
         taken: list[tuple[float, float]] = []

@@ -18,21 +18,11 @@ ROOTS = (Site.PELVIS, Site.LEFT_THIGH, Site.RIGHT_THIGH)  # nearest to all other
 
 
 class MemoryControl(QObject):
-    """Knows the visit and no page.
+    """Knows the visit and no page."""
 
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    lives
-        The sensors send again what they measure, as was asked.
-    done
-        No further walk is to follow.
-    """
-
-    changed = Signal()
-    done = Signal()
-    lives = Signal()
+    changed = Signal()  # something else is shown, or can be done
+    done = Signal()  # no further walk is to follow
+    lives = Signal()  # the sensors send again what they measure, as was asked
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)

@@ -11,21 +11,20 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QApplication,
     QBoxLayout,
-    QFrame,
     QHBoxLayout,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
 
 from app.patient_screen.controls import ControlsCard
-from app.theme.current import current_theme
+from app.theme.current import on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.sensors_progress import ProgressShown, SensorsProgress
-from app.widgets.themed import Themed
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_view import BenchState, BenchView
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
@@ -52,27 +51,15 @@ DESCRIBED_EVERY_S = 1.0  # screen readers are not notified every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
 
 
-class WalkingPage(Themed):
+class WalkingPage(QWidget):
     """Its look follows the walks it is shown: none yet, one being recorded, or in between.
 
-    Signals
-    -------
-    label_chosen
-        What the next walk is called.
-    keep_pressed, discard_pressed, undo_pressed
-        With the walk's id; undo takes back that it was discarded.
-    renamed
-        The id of a walk that was kept, and the condition that somebody typed for it.
-    restrapped_pressed
-        The sensors were taken off and put on again.
+    `keep_pressed`, `discard_pressed`: with the walk's id.
     """
 
-    label_chosen = Signal(str)
+    label_chosen = Signal(str)  # what the next walk is called
     keep_pressed = Signal(str)
     discard_pressed = Signal(str)
-    undo_pressed = Signal(str)
-    renamed = Signal(str, str)
-    restrapped_pressed = Signal()
 
     keeps_place_for_messages = True
 
@@ -100,11 +87,12 @@ class WalkingPage(Themed):
         self.timed = TimedView()
         self.timed_result = TimedResultView()
         self._inside = QWidget()
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._inside, is_upright=False)
         self._build()
         self._connect()
-        self._apply_theme()
+        self._space()
         self._arrange()
+        on_theme(self._fit)
 
     @property
     def is_recording(self) -> bool:
@@ -116,7 +104,7 @@ class WalkingPage(Themed):
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test.box]
+        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test]
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:
@@ -138,13 +126,7 @@ class WalkingPage(Themed):
         self.figures.show_figures(dict.fromkeys(self.live.strides, 0), math.nan)
 
     def show_walks(self, rows: tuple[WalkRow, ...], facts: str = "") -> None:
-        """Show the walks of this session in the order of recording.
-
-        Parameters
-        ----------
-        facts
-            Of the walk that is asked about, in words: its length, its cadence.
-        """
+        """Show the session's walks in order of recording; `facts` describe the walk that is asked about."""
         was_recording, had_focus = self.is_recording, self._has_focus()
         self.rows = rows
         asked = [row for row in rows if row.state in (WalkState.ASKING, WalkState.RECOVERED)]
@@ -187,10 +169,7 @@ class WalkingPage(Themed):
     def show_tests(
         self, protocol: TimedProtocol | None, state: TimedResult | None, before: Mapping[TimedProtocol, str]
     ) -> None:
-        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test.
-
-        `before`: what came of each at an earlier visit.
-        """
+        """Show the next test and the latest result in place of curves; `before`: results of an earlier visit."""
         self.next.test.show_before(before)
         self.next.test.show_choice(protocol)
         self._has_result = state is not None
@@ -241,7 +220,7 @@ class WalkingPage(Themed):
             self.walks.set_compact(is_compact)
             self.bench.set_compact(is_compact)
             self.timed.set_compact(is_compact)
-            self._apply_theme()
+            self._space()
             self._arrange()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -262,31 +241,15 @@ class WalkingPage(Themed):
             region.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             region.setProperty(NO_RING, True)
         self.charts.setAccessibleName(tr("Live angles and gait phases"))
-        self._left, self._right = QVBoxLayout(), QVBoxLayout()
-        self._left.addWidget(self.empty, 1)
-        self._left.addWidget(self.charts, 1)
-        self._left.addWidget(self.timed_result, 1)
-        self._left.addWidget(self.memory, 1)
-        self._right.addWidget(self.figures)
-        self._right.addWidget(self.walks, 1)
-        self._middle = QBoxLayout(ACROSS)
-        self._middle.addLayout(self._left, 1)
-        self._middle.addLayout(self._right)
-        self._column = QVBoxLayout(self._inside)
+        regions = (self.empty, self.charts, self.timed_result, self.memory)
+        self._left = lay_out(QVBoxLayout(), *((region, 1) for region in regions))
+        self._right = lay_out(QVBoxLayout(), self.figures, (self.walks, 1))
+        self._middle = lay_out(QBoxLayout(ACROSS), (self._left, 1), self._right)
         self.patient_controls.setVisible(False)
-        for widget in (self.notice, self.patient_controls, self.tabs, self.stopped):
-            self._column.addWidget(widget)
-        self._column.addWidget(self.bench, 1)
-        self._column.addWidget(self.timed, 1)
-        self._column.addLayout(self._middle, 1)
-        self._column.addWidget(self.next)
-        self._scroll.setWidget(self._inside)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._outer = QHBoxLayout(self)
-        self._outer.setContentsMargins(0, 0, 0, 0)
-        self._outer.addWidget(self._scroll)
+        above = (self.notice, self.patient_controls, self.tabs, self.stopped)
+        large = ((part, 1) for part in (self.bench, self.timed, self._middle))
+        self._column = lay_out(QVBoxLayout(self._inside), *above, *large, self.next)
+        lay_out(QHBoxLayout(self), self._scroll, margins=0)
         self.show_message("")
         self.stopped.show_walk(None, "")
 
@@ -294,9 +257,6 @@ class WalkingPage(Themed):
         self.next.chooser.chosen.connect(self._on_chosen)
         self.stopped.keep.clicked.connect(self._on_keep_clicked)
         self.stopped.discard.clicked.connect(self._on_discard_clicked)
-        self.walks.undo_pressed.connect(self.undo_pressed)
-        self.walks.renamed.connect(self.renamed)
-        self.walks.restrapped_pressed.connect(self.restrapped_pressed)
         self.tabs.chosen.connect(self._arrange)
 
     def _arrange(self) -> None:
@@ -344,7 +304,6 @@ class WalkingPage(Themed):
             layout.insertWidget(index, widget)
 
     def _fit(self) -> None:
-        px = current_theme().px
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
         # between walks what comes next needs the room more
@@ -381,14 +340,12 @@ class WalkingPage(Themed):
         if self._asked is not None:
             self.discard_pressed.emit(self._asked.id)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        between = px(BETWEEN_COMPACT if self._is_compact else BETWEEN)
+    def _space(self) -> None:
+        between = BETWEEN_COMPACT if self._is_compact else BETWEEN
         for layout in (self._column, self._left, self._right):
-            layout.setSpacing(between)
-        self._middle.setSpacing(between if self._is_compact else px(16))
-        self.notice.setMinimumHeight(px(44 if self._is_compact else NOTICE))
-        self._fit()
+            scaled(layout.setSpacing, between)
+        scaled(self._middle.setSpacing, between if self._is_compact else 16)
+        scaled(self.notice.setMinimumHeight, 44 if self._is_compact else NOTICE)
 
 
 def _condition_letter(row: WalkRow) -> str:

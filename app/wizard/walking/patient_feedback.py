@@ -53,8 +53,8 @@ class PatientFeedback(QObject):
         self._news.connect(self._on_news, Qt.ConnectionType.QueuedConnection)
         controls.target_set.connect(self._on_target_set)
         controls.metronome_pressed.connect(self._on_metronome_pressed)
-        controls.full_screen_pressed.connect(self.toggle_full_screen)
-        controls.close_pressed.connect(self.close)
+        controls.full.clicked.connect(self.toggle_full_screen)
+        controls.close_screen.clicked.connect(self.close)
         self.metronome.changed.connect(self._on_metronome_changed)
         controls.setVisible(False)
 
@@ -202,10 +202,7 @@ def reasons_against(
     calibration: Mapping[Joint, JointCalibration],
     prosthetic_sides: frozenset[Side],
 ) -> dict[tuple[TargetMeasure, Side | None], str]:
-    """Why each measure that cannot be a target cannot, in sentences.
-
-    `rested` are the sites whose sensors have lain still: the live angle of others drifts with their bias.
-    """
+    """Give the reason why each measure cannot be a target; `rested`: sites whose sensor's bias is known."""
     reasons = {}
     for measure, side in choices():
         found = assess_target(measure, side, worn, calibration, prosthetic_sides)

@@ -47,32 +47,24 @@ class LiveLane:
 class WalkingReadout:
     """All times on the acquisition's clock, as the thighs' sensors have it.
 
-    Attributes
-    ----------
-    now_s
-        The newest sample of any sensor, NaN before the first; while all are silent, the time that goes on meanwhile.
-    joints
-        Of every joint with a calibration, or hip that was found, whose two sensors are worn and whose angle can be.
-    lanes, strides
-        Of every side with a foot sensor; strides since the walk began, of feet that their own knees never contradicted.
-    cadence_steps_min
-        Of both feet; NaN while nobody walks.
-    missing, doubtful
-        Sites that are silent; feet whose events disagree with their knees now.
-    implausible
-        Knees and ankles whose angle left what a joint can do within the last seconds, so that they are not in `joints`.
-    stride_values, values_reported
-        The values of the last strides in the order reported, for a target; and how many there were of them so far,
-        those that are no longer among them included.
-    test
-        The state of the timed test that the walk is; None of other walks.
+    `now_s`: the newest sample of any sensor, NaN before the first; while all are silent, the time that goes on
+    meanwhile.
+    `joints`: of every joint with a calibration, or hip that was found, whose two sensors are worn and whose angle can
+    be.
+    `lanes`, `strides`: of every side with a foot sensor; strides since the walk began, of feet that their own knees
+    never contradicted.
+    `missing`, `doubtful`: sites that are silent; feet whose events disagree with their knees now.
+    `implausible`: knees and ankles whose angle left what a joint can do within the last seconds, so that they are not
+    in `joints`.
+    `stride_values`, `values_reported`: the values of the last strides in the order reported, for a target; and how many
+    there were of them so far, those that are no longer among them included.
     """
 
     now_s: float = math.nan
     joints: Mapping[Joint, LiveTrace] = field(default_factory=dict)
     lanes: Mapping[Side, LiveLane] = field(default_factory=dict)
     strides: Mapping[Side, int] = field(default_factory=dict)
-    cadence_steps_min: float = math.nan
+    cadence_steps_min: float = math.nan  # of both feet; NaN while nobody walks
     slips: tuple[Slip, ...] = ()
     corrections: tuple[BiasCorrection, ...] = ()
     missing: tuple[Site, ...] = ()
@@ -80,7 +72,7 @@ class WalkingReadout:
     doubtful: tuple[Site, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()
     values_reported: int = 0
-    test: LiveReadout | None = None
+    test: LiveReadout | None = None  # the state of the timed test that the walk is; None of other walks
 
     @property
     def knees(self) -> dict[Side, LiveTrace]:

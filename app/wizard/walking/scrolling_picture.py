@@ -6,10 +6,14 @@ whenever it is drawn: moving the picture on and drawing all of it again give the
 
 import math
 
-from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QPixmap
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QPainter, QPixmap, QResizeEvent
+from PySide6.QtWidgets import QWidget
 
+from app.widgets.themed import Themed
 from core.samples import FloatArray
+
+SHOWN_S = 8.0  # seconds
 
 
 class ScrollingPicture:
@@ -26,10 +30,7 @@ class ScrollingPicture:
         return self._px_per_s
 
     def advance(self, now_s: float) -> int:
-        """Let the picture end at `now_s`, and give the first of its columns that shows nothing yet.
-
-        A clock that went back, or on by more than the picture holds, makes all of it new.
-        """
+        """Scroll the end to `now_s` and give the first empty column; a clock jump clears the whole picture."""
         last = math.floor(now_s * self._px_per_s)
         before, self._last_column = self._last_column, last
         if before is None or not 0 <= last - before < self.columns:
@@ -61,3 +62,37 @@ class ScrollingPicture:
     @property
     def _left(self) -> int:
         return (self._last_column or 0) - self.columns
+
+
+class Scrolling(Themed):
+    """Has the last seconds up to `_now_s` in a picture: another one for another size, time in sight or look."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._seconds, self._now_s = SHOWN_S, 0.0
+        self._picture: ScrollingPicture | None = None
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+
+    def set_seconds(self, seconds: float) -> None:
+        """Set how much time is in sight."""
+        if seconds != self._seconds:
+            self._seconds = seconds
+            self.redraw()
+
+    def redraw(self) -> None:
+        """Draw everything again, the next time it is in sight."""
+        self._picture = None
+        self.update()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.redraw()
+
+    def _picture_of(self, columns: int, rows: int) -> ScrollingPicture:
+        picture = self._picture
+        if picture is None or (picture.columns, picture.rows) != (columns, rows):
+            picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
+        return picture
+
+    def _apply_theme(self) -> None:
+        self.redraw()

@@ -18,6 +18,7 @@ from app.wizard.walk_messages import no_foot_message
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_labels import label_after, labels_for, stored_label
@@ -33,7 +34,6 @@ from core.targets import TargetTally, with_tallies
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing, SessionRecording
     from app.wizard.visit import Visit
-    from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout
 
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
@@ -76,20 +76,18 @@ class WalkingStep(Step):
     # the frame of the wizard
 
     @property
-    def page(self) -> "WalkingPage":
+    def page(self) -> WalkingPage:
         if self._page is None:
-            from app.wizard.walking.page import WalkingPage
-
             page = self._page = WalkingPage(self.bench.entry)
-            page.bench.chosen.connect(self.bench.choose)
-            page.bench.reported.connect(self._on_change_reported)
+            page.bench.alignments.chosen.connect(self.bench.choose)
+            page.bench.alignments.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
-            page.undo_pressed.connect(self._on_keep_pressed)
-            page.renamed.connect(self._on_renamed)
-            page.restrapped_pressed.connect(self._on_restrapped_pressed)
+            page.walks.undo_pressed.connect(self._on_keep_pressed)
+            page.walks.renamed.connect(self._on_renamed)
+            page.walks.restrapped.clicked.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
             self.feedback = PatientFeedback(self._visit, page.patient_controls, self)
             self.feedback.run_requested.connect(self.run)
@@ -435,7 +433,7 @@ class WalkingStep(Step):
     @Slot()
     def _on_change_reported(self) -> None:
         """Show what was entered for the next change, without drawing anything else again."""
-        self.page.bench.show_entry(self.bench.next_title)
+        self.page.bench.alignments.show_entry(self.bench.next_title)
         self.changed.emit()
 
     @Slot(str)

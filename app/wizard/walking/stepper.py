@@ -1,10 +1,11 @@
 """A figure that goes up and down in steps, by keys or by pressing its ends: no keyboard of digits is needed."""
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QFontMetrics, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QFontMetrics, QKeyEvent, QMouseEvent, QPainter
+from PySide6.QtWidgets import QSizePolicy
 
 from app.theme.current import current_theme, px
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import MINUS
@@ -16,7 +17,7 @@ UP = (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Up, Qt.Key.Key_Right)
 DOWN = (Qt.Key.Key_Minus, Qt.Key.Key_Underscore, Qt.Key.Key_Down, Qt.Key.Key_Left)
 
 
-class Stepper(QWidget):
+class Stepper(Painted):
     """`stepped` gives the direction, 1 or -1; whoever receives it sets what is shown then."""
 
     accessible_role = QAccessible.Role.SpinBox
@@ -36,15 +37,11 @@ class Stepper(QWidget):
         self.updateGeometry()
         self.update()
 
-    def sizeHint(self) -> QSize:
+    def minimumSizeHint(self) -> QSize:
         theme = current_theme()
-        px = theme.px
         caption = QFontMetrics(theme.font(12)).horizontalAdvance(self.caption)
         value = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.value) + 2 * px(END)
         return QSize(max(px(LEAST), caption + 2, value + 2), px(CAPTION + BOX))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
         theme, box = current_theme(), self._box
@@ -71,12 +68,9 @@ class Stepper(QWidget):
         if event.position().y() >= self._box.top() and (x < end or x > self.width() - end):
             self.stepped.emit(-1 if x < end else 1)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        theme.paint_box(painter, self._box.adjusted(1, 1, -1, -1), theme.colours.surface, theme.colours.control, 1.25)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
+    def draw(self, painter: QPainter) -> None:
+        c, box = current_theme().colours, self._box.adjusted(1, 1, -1, -1)
+        current_theme().paint_box(painter, box, c.surface, c.control)
 
     @property
     def _box(self) -> QRectF:

@@ -34,15 +34,9 @@ if TYPE_CHECKING:
 
 
 class TimedControl(QObject):
-    """Knows the visit and no page.
+    """Knows the visit and no page."""
 
-    Signals
-    -------
-    changed
-        Something else is to be shown.
-    """
-
-    changed = Signal()
+    changed = Signal()  # something else is to be shown
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseLane, CourseVisit
 from app.summary.course_words import changes_since_in_words
-from app.theme.current import px
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.timed_tests import (
     course_sentence,
     error_words,
@@ -69,7 +69,7 @@ class TimedResult:
         return self.attempts[-1]
 
 
-class TimedResultView(Themed):
+class TimedResultView(QWidget):
     """In the place of the curves, between walks."""
 
     accessible_role = QAccessible.Role.Grouping
@@ -84,7 +84,6 @@ class TimedResultView(Themed):
         self.course = CourseCard()
         self.errors = Text(size=12, tone="ink2", wraps=True)
         self._build()
-        self._apply_theme()
 
     def show_state(self, state: TimedResult) -> None:
         found, latest = state.latest.found, state.latest
@@ -123,37 +122,15 @@ class TimedResultView(Themed):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Test result"))
-        head, words = QHBoxLayout(), QVBoxLayout()
-        words.addWidget(self.first)
-        words.addWidget(self.then)
-        head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        head.addLayout(words, 1)
-        inside = QWidget()
-        self._column = QVBoxLayout(inside)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(head)
+        words = lay_out(QVBoxLayout(), self.first, self.then)
+        head = lay_out(QHBoxLayout(), (self._mark, 0, Qt.AlignmentFlag.AlignTop), (words, 1))
         attempts, self._parts_card = Card(), Card()
-        for card, title, table in (
-            (attempts, tr("Attempts"), self.attempts),
-            (self._parts_card, tr("Test sections"), self.parts),
-        ):
-            card.column.addWidget(Text(title, size=16, weight=SEMIBOLD))
-            card.column.addWidget(table)
-            self._column.addWidget(card)
-        self._column.insertWidget(2, self.course)
-        self._column.addWidget(self.errors)
-        self._column.addStretch(1)
-        scroll = QScrollArea()
-        scroll.setWidget(inside)
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(scroll)
-
-    def _apply_theme(self) -> None:
-        self._column.setSpacing(px(12))
+        lay_out(attempts.column, Text(tr("Attempts"), size=16, weight=SEMIBOLD), self.attempts)
+        lay_out(self._parts_card.column, Text(tr("Test sections"), size=16, weight=SEMIBOLD), self.parts)
+        inside = QWidget()
+        parts = (head, attempts, self.course, self._parts_card, self.errors, 1)
+        lay_out(QVBoxLayout(inside), *parts, margins=0, spacing=12)
+        lay_out(QVBoxLayout(self), scrolled(inside, is_upright=False), margins=0)
 
 
 def number(value: float, digits: int) -> str:

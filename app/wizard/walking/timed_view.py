@@ -4,18 +4,20 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QBrush, QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout
+from PySide6.QtGui import QAccessible, QBrush, QColor, QFontMetrics, QPainter, QPen, QPolygonF
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.digits import Digits
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.body import name_of
 from app.wording.numbers import clock
 from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
@@ -86,14 +88,14 @@ def distance_words(state: TimedViewState) -> tuple[str, str]:
     return (figure_text(metres, ".1f") if metres < 99.95 else f"{metres:.0f}"), ""
 
 
-class TimedView(Themed):
+class TimedView(QWidget):
     """Everything of one test; nothing in it is pressed: Space and the bar do that."""
 
     accessible_role = QAccessible.Role.Grouping
 
     def __init__(self) -> None:
         super().__init__()
-        self._is_compact, self._stated_s = False, -1
+        self._stated_s = -1
         self._title = Text(size=24, weight=SEMIBOLD)
         self._note = Text(size=16, tone="ink2")
         self.status = _Status()
@@ -103,7 +105,7 @@ class TimedView(Themed):
         self.course = _Course()
         self._tiles = [_ByItself(Icon.CHECK), _ByItself(Icon.STOP), _ByItself(Icon.SOUND)]
         self._build()
-        self._apply_theme()
+        self.set_compact(is_compact=False)
 
     def show_state(self, state: TimedViewState) -> None:
         protocol, has_distance = state.protocol, state.protocol is not TimedProtocol.SIT_TO_STAND
@@ -116,8 +118,7 @@ class TimedView(Themed):
         self._distance_card.setVisible(has_distance)
         metres, why = distance_words(state)
         self.distance.show_text(metres, "" if metres == NO_FIGURE else "m")
-        if self.why.text() != why:
-            self.why.setText(why)
+        self.why.setText(why)
         self.why.setVisible(bool(why))
         self.course.show_state(state)
         words = (
@@ -143,60 +144,37 @@ class TimedView(Themed):
                 self.setAccessibleDescription(stated)
 
     def set_compact(self, is_compact: bool) -> None:
-        self._is_compact = is_compact
-        self._apply_theme()
+        for layout in self._spaced:
+            scaled(layout.setSpacing, 8 if is_compact else 16)
+        for tile in self._tiles:
+            tile.setVisible(not is_compact)
 
     def _build(self) -> None:
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Timed test"))
-        head = QHBoxLayout()
-        for widget in (self._title, self._note):
-            head.addWidget(widget, 0, Qt.AlignmentFlag.AlignBottom)
-        head.addStretch(1)
-        head.addWidget(self.status)
-        self._time_card, self._distance_card = Card(), Card()
-        self._labels: list[QLabel] = []
-        for card, title, figure in (
-            (self._time_card, tr("Time"), self.time),
-            (self._distance_card, tr("Distance"), self.distance),
-        ):
-            label = Text(title, size=20, weight=MEDIUM, tone="ink2")
-            self._labels.append(label)
-            card.column.addWidget(label)
-            card.column.addWidget(figure, 1)
-        self._distance_card.column.addWidget(self.why)
-        self._figures = QHBoxLayout()
-        self._figures.addWidget(self._time_card, 604)
-        self._figures.addWidget(self._distance_card, 396)
-        self._course_card = Card()
-        self._course_card.column.addWidget(self.course)
-        self._row = QHBoxLayout()
-        for tile in self._tiles:
-            self._row.addWidget(tile, 1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(head)
-        self._column.addLayout(self._figures, 1)
-        self._column.addWidget(self._course_card)
-        self._column.addLayout(self._row)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        for layout in (self._column, self._figures, self._row):
-            layout.setSpacing(px(8 if self._is_compact else 16))
-        for tile in self._tiles:
-            tile.setVisible(not self._is_compact)
+        named = ((one, 0, Qt.AlignmentFlag.AlignBottom) for one in (self._title, self._note))
+        head = lay_out(QHBoxLayout(), *named, 1, self.status)
+        time, self._distance_card, course = Card(), Card(), Card()
+        distance = self._distance_card
+        for card, title, figure in ((time, tr("Time"), self.time), (distance, tr("Distance"), self.distance)):
+            lay_out(card.column, Text(title, size=20, weight=MEDIUM, tone="ink2"), (figure, 1))
+        distance.column.addWidget(self.why)
+        course.column.addWidget(self.course)
+        figures = lay_out(QHBoxLayout(), (time, 604), (distance, 396))
+        row = lay_out(QHBoxLayout(), *((tile, 1) for tile in self._tiles))
+        column = lay_out(QVBoxLayout(self), head, (figures, 1), course, row, margins=0)
+        self._spaced = (figures, row, column)
 
 
-class _Status(Themed):
+class _Status(Painted):
     """A word on an inverse ground, with a dot that is full while the clock runs."""
 
     def __init__(self) -> None:
         super().__init__()
         self._words, self._is_on = "", False
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self._apply_theme()
+        set_ground(self, Ground("inv", "inv"))
 
     def show_words(self, words: str, *, is_on: bool) -> None:
         if (words, is_on) != (self._words, self._is_on):
@@ -205,89 +183,66 @@ class _Status(Themed):
             self.updateGeometry()
             self.update()
 
-    def sizeHint(self) -> QSize:
+    def minimumSizeHint(self) -> QSize:
         theme = current_theme()
         words = QFontMetrics(theme.font(18, SEMIBOLD)).horizontalAdvance(self._words)
         return QSize(max(theme.px(176), words + theme.px(BEFORE_STATUS + BEHIND_STATUS)), theme.px(48))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        theme.paint_box(painter, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), c.inv, c.inv, 1)
+    def draw(self, painter: QPainter) -> None:
+        c = current_theme().colours
         dot = QRectF(px(20), 0.5 * (self.height() - px(12)), px(12), px(12))
         painter.setPen(QPen(QColor(c.inv_ink), 2))
         painter.setBrush(QColor(c.inv_ink) if self._is_on else Qt.BrushStyle.NoBrush)
         painter.drawEllipse(dot)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
-        px = current_theme().px
         box = QRectF(px(BEFORE_STATUS), 0, self.width() - px(BEFORE_STATUS + BEHIND_STATUS), self.height())
         return [PaintedText(self._words, box, current_theme().font(18, SEMIBOLD), "inv_ink")]
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
 
 
 class _ByItself(Card):
     """What happens by itself, in two lines."""
 
     def __init__(self, icon: Icon) -> None:
-        self._first, self._then = Text(weight=SEMIBOLD, wraps=True), Text(size=13, tone="ink2", wraps=True)
-        self._mark = IconMark(icon, size=20)
         super().__init__()
+        self._first, self._then = Text(weight=SEMIBOLD, wraps=True), Text(size=13, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        row, words = QHBoxLayout(), QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(self._first)
-        words.addWidget(self._then)
-        row.addWidget(self._mark)
-        row.addLayout(words, 1)
-        self.column.addLayout(row)
+        words = lay_out(QVBoxLayout(), self._first, self._then, spacing=0)
+        self.column.addLayout(lay_out(QHBoxLayout(), IconMark(icon, size=20), (words, 1)))
 
     def show_words(self, first: str, then: str) -> None:
-        for label, text in ((self._first, first), (self._then, capitalised(then))):
-            if label.text() != text:
-                label.setText(text)
+        self._first.setText(first)
+        self._then.setText(capitalised(then))
 
 
-class _Course(Themed):
+class _Course(Painted):
     """How much of a test is done, as a bar; under it the steps, on the side of the foot that made them."""
 
     def __init__(self) -> None:
         super().__init__()
         self._state: TimedViewState | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._apply_theme()
+        scaled(self.setMinimumSize, 200, 120)
 
     def show_state(self, state: TimedViewState) -> None:
         self._state = state
         self.update()
 
-    def sizeHint(self) -> QSize:
-        return QSize(px(400), px(120))
+    def _boxes(self, state: TimedViewState) -> tuple[QRectF, QRectF]:
+        """All of the course, and what of it is timed."""
+        whole = QRectF(px(4), px(36), self.width() - px(8), px(48))
+        if DEFINITIONS[state.protocol].tape_m is None:
+            return whole, whole
+        per_m = whole.width() / (RUN_IN_M + (DEFINITIONS[state.protocol].length_m or 1.0) + RUN_OUT_M)
+        return whole, whole.adjusted(per_m * RUN_IN_M, 0, -per_m * RUN_OUT_M, 0)
 
-    def minimumSizeHint(self) -> QSize:
-        return QSize(px(200), px(120))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         if self._state is None:
             return
-        theme, state = current_theme(), self._state
-        c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        whole = QRectF(px(4), px(36), self.width() - px(8), px(48))
-        is_taped = DEFINITIONS[state.protocol].tape_m is not None
-        inner = QRectF(whole)
+        c, px, state = current_theme().colours, current_theme().px, self._state
+        whole, inner = self._boxes(state)
+        is_taped = inner != whole
         if is_taped:
-            tape_m = DEFINITIONS[state.protocol].length_m or 1.0
-            all_m = RUN_IN_M + tape_m + RUN_OUT_M
-            inner.setLeft(whole.left() + whole.width() * RUN_IN_M / all_m)
-            inner.setRight(whole.right() - whole.width() * RUN_OUT_M / all_m)
             for box in (
                 QRectF(whole.left(), whole.top(), inner.left() - whole.left(), whole.height()),
                 QRectF(inner.right(), whole.top(), whole.right() - inner.right(), whole.height()),
@@ -303,20 +258,16 @@ class _Course(Themed):
             for x in (inner.left(), inner.right()):
                 painter.drawLine(QPointF(x, whole.top() - px(6)), QPointF(x, whole.bottom() + px(6)))
         if 0.0 < _share(state) < 1.0:
-            self._paint_pointer(painter, done)
-        for text in self._texts(state, whole, inner):
-            text.paint(painter, c)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(c.ink))
+            tip = QPointF(done.right(), done.top() - px(1))
+            painter.drawPolygon(QPolygonF([tip, tip + QPointF(-px(10), -px(13)), tip + QPointF(px(10), -px(13))]))
 
-    def _paint_pointer(self, painter: QPainter, done: QRectF) -> None:
-        px = current_theme().px
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(current_theme().colours.ink))
-        tip = QPointF(done.right(), done.top() - px(1))
-        painter.drawPolygon(QPolygonF([tip, tip + QPointF(-px(10), -px(13)), tip + QPointF(px(10), -px(13))]))
-
-    def _texts(self, state: TimedViewState, whole: QRectF, inner: QRectF) -> list[PaintedText]:
-        theme = current_theme()
-        px = theme.px
+    def painted_texts(self) -> list[PaintedText]:
+        if self._state is None:
+            return []
+        theme, px, state = current_theme(), current_theme().px, self._state
+        whole, inner = self._boxes(state)
         top = QRectF(whole.left(), 0, whole.width(), px(24))
         under = QRectF(whole.left(), whole.bottom() + px(8), whole.width(), px(28))
         found = [PaintedText(_middle_words(state), top, theme.font(16, SEMIBOLD), align=CENTRE)]
@@ -326,7 +277,7 @@ class _Course(Themed):
                 PaintedText(tr("run-out"), top, theme.font(15), "ink2", RIGHT),
             ]
         steps = state.readout.steps[-SHOWN_STEPS:]
-        total_m = _total_m(state)
+        total_m = DEFINITIONS[state.protocol].length_m  # None where the course has none
         for number, (side, at_m) in enumerate(steps):
             share = at_m / total_m if total_m else (number + 0.5) / SHOWN_STEPS
             if share <= 1.0:
@@ -334,14 +285,6 @@ class _Course(Themed):
                 tone = "left_text" if side is Side.LEFT else "right_text"
                 found.append(PaintedText(side.letter, box, theme.font(17, SEMIBOLD), tone, CENTRE))
         return found
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-
-
-def _total_m(state: TimedViewState) -> float | None:
-    """How long the course is that is drawn; None where it has no length."""
-    return DEFINITIONS[state.protocol].length_m
 
 
 def _share(state: TimedViewState) -> float:

@@ -11,13 +11,7 @@ ALIGNMENTS = 3
 
 
 def labels_for(patient: Patient, used: Sequence[str]) -> tuple[str, ...]:
-    """Give the labels to choose from, as they are read: the usual ones first, then those of this session's walks.
-
-    Parameters
-    ----------
-    used
-        The labels of the walks so far, in order.
-    """
+    """Give the labels to choose from: the usual ones, then those of this session's walks."""
     used = [name_in_words(label) for label in used]
     count = max(ALIGNMENTS, sum(label in _alignments(len(LETTERS)) for label in set(used)) + 1)
     usual = [tr("Barefoot"), tr("Shoes"), tr("AFO")]

@@ -6,31 +6,31 @@ Nothing is deleted: a walk can come back.
 from dataclasses import dataclass
 from enum import StrEnum
 
-from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtCore import QEvent, QObject, QRectF, Qt, Signal
+from PySide6.QtGui import QAccessible, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
-    QFrame,
     QHBoxLayout,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
-from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
+from app.theme.theme import CHIP_RADIUS
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.painted_button import PaintedButton
-from app.widgets.painted_text import CENTRE, PaintedText, height_for
-from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
+from app.widgets.painted_text import PaintedText, height_for
+from app.widgets.reading_area import scrolled
+from app.widgets.text import MEDIUM, Text
+from app.wizard.walking.badge import Badge
 from app.wording.translation import tr, tr_n
 
-BADGE = 28
 ROW, BETWEEN = 56, 4
 LEAST_WIDTH = 180
 LEAST_ROWS = 1.5  # in sight: half a row shows that there are more
@@ -80,36 +80,26 @@ class WalkList(Card):
 
     accessible_role = QAccessible.Role.List
 
-    undo_pressed = Signal(str)
+    undo_pressed = Signal(str)  # takes back that a walk was discarded
     renamed = Signal(str, str)  # a walk that was kept, and the condition that somebody typed
-    restrapped_pressed = Signal()
 
     def __init__(self) -> None:
+        super().__init__(spacing=4)
         self._rows: list[_ListedWalk] = []
         self._is_compact = False
         self._title = Text(tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
         self._none = Text(tr("No walks yet."), size=14, tone="ink2", wraps=True)
         self._inside = QWidget()
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._inside)
         self.restrapped = ActionRow(
             Icon.REPEAT,
             tr("Sensors were reattached"),
             tr("Standing still and free motion must then be repeated."),
         )
-        self._list = QVBoxLayout(self._inside)
-        super().__init__(spacing=4)
+        self._list = lay_out(QVBoxLayout(self._inside), 1, margins=0, spacing=BETWEEN)
         self.setAccessibleName(tr("Walks"))
-        self._list.addStretch(1)
-        self._scroll.setWidget(self._inside)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self._none)
-        self.column.addWidget(self._scroll, 1)
-        self.column.addWidget(self.restrapped)
-        self.restrapped.clicked.connect(self.restrapped_pressed)
+        lay_out(self.column, self._title, self._none, (self._scroll, 1), self.restrapped)
+        on_theme(self._fit)
 
     @property
     def buttons(self) -> list[QWidget]:
@@ -145,17 +135,10 @@ class WalkList(Card):
         self.restrapped.setVisible(is_offered)
 
     def _fit(self) -> None:
-        px = current_theme().px
         rows = len(self._rows) if self._is_compact else min(LEAST_ROWS, len(self._rows))
         self._scroll.setMinimumHeight(px((ROW + BETWEEN) * rows))
         bar = 0 if self._is_compact else self._scroll.verticalScrollBar().sizeHint().width()
         self._scroll.setMinimumWidth(max(px(LEAST_WIDTH), self._inside.minimumSizeHint().width() + bar))
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._list.setContentsMargins(0, 0, 0, 0)
-        self._list.setSpacing(px(BETWEEN))
-        self._fit()
 
 
 MARKS = {
@@ -164,9 +147,11 @@ MARKS = {
     WalkState.RECOVERED: Icon.WARNING,
     WalkState.ASKING: Icon.UNCHECKED,
 }
+FRAMED = Ground("", "control", 1.25, CHIP_RADIUS)
+FILLED = Ground("ink", "ink", 1.25, CHIP_RADIUS)  # of the walk that goes on
 
 
-class _ListedWalk(Themed):
+class _ListedWalk(QWidget):
     accessible_role = QAccessible.Role.ListItem
 
     def __init__(self, owner: WalkList) -> None:
@@ -174,29 +159,24 @@ class _ListedWalk(Themed):
         self._owner = owner
         self._walk = WalkRow("", "", "", WalkState.KEPT)
         self._is_edited = False
+        self._bar, self._badge = QWidget(), Badge()
         self._label = Text(size=15, weight=MEDIUM, wraps=True)
         self._note = Text(size=12, tone="ink2", wraps=True)
         self._mark = IconMark(Icon.CHECK, size=20)
         self.undo = Button(tr("Undo"), ButtonKind.QUIET, height=44)
         self.edit = Button("", ButtonKind.QUIET, Icon.EDIT, height=44)
         self.field = Field(tr("Condition of this walk"), has_label=False)
-        self._words = QVBoxLayout()
-        self._words.addStretch(1)
-        self._words.addWidget(self.field)
-        self._words.addWidget(self._label)
-        self._words.addWidget(self._note)
-        self._words.addStretch(1)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(self._words, 1)
-        self._row.addWidget(self._mark)
-        self._row.addWidget(self.edit)
-        self._row.addWidget(self.undo)
+        words = lay_out(QVBoxLayout(), 1, self.field, self._label, self._note, 1, spacing=0)
+        bar = lay_out(QHBoxLayout(), self._bar, self._badge, spacing=7)
+        named = lay_out(QHBoxLayout(), bar, (words, 1), spacing=10)
+        lay_out(QHBoxLayout(self), (named, 1), self._mark, self.edit, self.undo, margins=(0, 4, 8, 4), spacing=4)
+        scaled(self._bar.setFixedWidth, 3)
+        scaled(self.setMinimumHeight, ROW)
         self.undo.clicked.connect(self._on_undo_clicked)
         self.edit.clicked.connect(self._on_edit_clicked)
         self.field.committed.connect(self._on_committed)
         self.field.line_edit.editingFinished.connect(self._on_left)
         self.field.line_edit.installEventFilter(self)
-        self._apply_theme()
 
     def show_walk(self, walk: WalkRow) -> None:
         is_same = (walk.id, walk.label, walk.state) == (self._walk.id, self._walk.label, self._walk.state)
@@ -216,7 +196,10 @@ class _ListedWalk(Themed):
         self._label.set_tone("ink2" if walk.state is WalkState.DISCARDED else "ink")
         state = tr("included") if walk.state is WalkState.KEPT else ""
         self.setAccessibleName(", ".join(filter(None, [walk.letter, walk.label, walk.note, state])))
-        self.update()
+        is_now = walk.state is WalkState.RECORDING
+        set_ground(self, Ground("sunken", inset=0) if is_now else None)
+        set_ground(self._bar, Ground("ink", radius=1, inset=0) if is_now else None)
+        self._badge.show_letter(walk.letter, "inv_ink" if is_now else "ink", FILLED if is_now else FRAMED)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_F2 and self._can_be_renamed:
@@ -241,29 +224,6 @@ class _ListedWalk(Themed):
                 self._on_left()
                 return True
         return super().eventFilter(watched, event)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        is_now = self._walk.state is WalkState.RECORDING
-        if is_now:
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(c.sunken))
-            radius = CONTROL_RADIUS * theme.scale
-            painter.drawRoundedRect(QRectF(self.rect()), radius, radius)
-            painter.setBrush(QColor(c.ink))
-            painter.drawRoundedRect(QRectF(0, px(4), px(3), self.height() - 2 * px(4)), 1, 1)
-        if not self._walk.letter:  # discarded: no chart has it
-            return
-        badge = QRectF(px(10), (self.height() - px(BADGE)) / 2, px(BADGE), px(BADGE))
-        painter.setPen(theme.pen(c.ink if is_now else c.control, 1.25))
-        painter.setBrush(QColor(c.ink) if is_now else Qt.BrushStyle.NoBrush)
-        radius = CHIP_RADIUS * theme.scale
-        painter.drawRoundedRect(badge.adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
-        tone = "inv_ink" if is_now else "ink"
-        PaintedText(self._walk.letter, badge, theme.font(14, SEMIBOLD), tone, CENTRE).paint(painter, c)
 
     @property
     def _can_be_renamed(self) -> bool:
@@ -302,14 +262,6 @@ class _ListedWalk(Themed):
         self.edit.setVisible(self._can_be_renamed)
         self.undo.setVisible(walk.state is WalkState.DISCARDED)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(10 + BADGE + 10), px(4), px(8), px(4))
-        self._row.setSpacing(px(4))
-        self._words.setSpacing(0)
-        self.setMinimumHeight(px(ROW))
-        self.update()
-
 
 class ActionRow(PaintedButton):
     """A row that does something: an icon, what was the case, and below what follows. Both wrap."""
@@ -322,15 +274,8 @@ class ActionRow(PaintedButton):
         self.setAccessibleDescription(note)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._fit()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._fit()
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(180), self.minimumHeight())
+        scaled(self.setMinimumWidth, LEAST_WIDTH)
+        on_theme(self._fit)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -339,7 +284,6 @@ class ActionRow(PaintedButton):
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
         theme = current_theme()
-        px = theme.px
         left, width = px(10 + 20 + 10), self._words_width
         text, note = theme.font(14, MEDIUM), theme.font(12)
         high, low = height_for(self.text(), text, width), height_for(self._note, note, width)
@@ -351,7 +295,7 @@ class ActionRow(PaintedButton):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
         theme.paint_box(painter, box, c.surface, c.control)
@@ -363,7 +307,6 @@ class ActionRow(PaintedButton):
 
     @property
     def _words_width(self) -> int:
-        px = current_theme().px
         return max(self.width() - px(10 + 20 + 10) - px(8), 1)
 
     def _fit(self) -> None:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from app.system import sounds
 from app.theme.icons import Icon
@@ -21,25 +21,20 @@ from core.timed.protocols import DEFINITIONS
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing
     from app.wizard.visit import Visit
-
-
-class Walks(Protocol):
-    """What the step does when an action is pressed; what else is done, the parts do that it is joined of."""
-
-    def run(self) -> None: ...
-    def stop(self) -> None: ...
-    def go_on(self) -> None: ...
-    def keep_at_bench(self) -> None: ...
-    def discard(self) -> None: ...
-    def return_to_first(self) -> None: ...
-    def toggle_patient_screen(self) -> None: ...
+    from app.wizard.walking.step import WalkingStep
 
 
 class WalkingBar:
     """Knows the visit and what is joined to it, and no page."""
 
     def __init__(
-        self, walks: Walks, visit: "Visit", start: WalkStart, bench: Bench, timed: TimedControl, memory: MemoryControl
+        self,
+        walks: "WalkingStep",
+        visit: "Visit",
+        start: WalkStart,
+        bench: Bench,
+        timed: TimedControl,
+        memory: MemoryControl,
     ) -> None:
         self._walks, self._visit, self._start = walks, visit, start
         self._bench, self._timed, self._memory = bench, timed, memory

@@ -33,13 +33,7 @@ def is_c3d(_path: Path, head: bytes) -> bool:
 
 
 def read_c3d(path: Path) -> ReferenceFile:
-    """Read joint angles where the file has them, else make them of its markers.
-
-    Raises
-    ------
-    FileRefusedError
-        The library is not installed, it cannot read the file, or there are neither angles nor markers.
-    """
+    """Read joint angles, else make them of markers; raises FileRefusedError with neither or no library."""
     if find_spec("ezc3d") is None:
         raise FileRefusedError(
             path.name,
@@ -47,7 +41,7 @@ def read_c3d(path: Path) -> ReferenceFile:
             "Install gaitwright[imports], or give a CSV file",
         )
     _refuse_cut(path)
-    import ezc3d
+    import ezc3d  # an extra
 
     try:
         c3d = ezc3d.c3d(str(path))

@@ -49,18 +49,7 @@ def landmark_of(label: str) -> tuple[Side, Landmark] | None:
 
 
 def angles_of_markers(markers: Markers) -> dict[Joint, FloatArray]:
-    """Angles of the joints whose markers are all there.
-
-    Parameters
-    ----------
-    markers
-        (n, 3) in any unit and any axes.
-
-    Returns
-    -------
-    dict
-        By joint (n,) radians; NaN where one of its markers was not seen.
-    """
+    """Compute the angles (n,), rad, of joints whose markers (n, 3) are all there; NaN where one is not seen."""
     angles: dict[Joint, FloatArray] = {}
     up = _vertical(markers)
     if up is None:

@@ -11,13 +11,7 @@ from devices.files.tables import COPY_AGAIN, CORRECT_IT
 
 
 def lines_of(path: Path) -> list[str]:
-    """The lines of a text.
-
-    Raises
-    ------
-    FileRefusedError
-        It is no text.
-    """
+    """Read the lines of a text; raises FileRefusedError where it is no text."""
     content = path.read_bytes()
     try:
         return content.decode("utf-8-sig").splitlines()
@@ -29,25 +23,7 @@ def lines_of(path: Path) -> list[str]:
 def numbers_below(
     lines: Sequence[str], first: int, columns: Sequence[int], count: int, where: str, delimiter: str | None = None
 ) -> FloatArray:
-    """Some columns of the lines from index `first` on; an empty cell is NaN.
-
-    Parameters
-    ----------
-    columns
-        Which of the `count` that each line has.
-    delimiter
-        None: blanks and tabs, however many.
-
-    Returns
-    -------
-    (n, len(columns))
-        As they stand in the file.
-
-    Raises
-    ------
-    FileRefusedError
-        A line with fewer or more cells, a cell that is no number.
-    """
+    """Read columns (n, len(columns)) from line `first`, empty cells NaN; raises FileRefusedError."""
     rows = []
     for number, line in enumerate(lines[first:], first + 1):
         if not line.strip():
@@ -70,18 +46,7 @@ def numbers_below(
 
 
 def check_ascending(time_s: FloatArray, where: str) -> None:
-    """Refuse a clock that stops or steps back.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Stamps of one trial.
-
-    Raises
-    ------
-    FileRefusedError
-        It does, or a stamp is missing.
-    """
+    """Refuse a clock that stops, steps back or lacks a stamp; raises FileRefusedError."""
     if not np.isfinite(time_s).all():
         row = int(np.argmin(np.isfinite(time_s))) + 1
         raise FileRefusedError(where, "row {row} has no time", CORRECT_IT, row=row)

@@ -32,13 +32,7 @@ def is_opensim(_path: Path, head: bytes) -> bool:
 
 
 def read_opensim(path: Path) -> ReferenceFile:
-    """Read the hips, knees and ankles among a motion's coordinates.
-
-    Raises
-    ------
-    FileRefusedError
-        None of them, no time, or a table that is not what it claims to be.
-    """
+    """Read the hips, knees and ankles among a motion's coordinates; raises FileRefusedError where none."""
     lines = lines_of(path)
     end = next((k for k, line in enumerate(lines) if line.strip().lower() == END), None)
     if end is None or end + 1 >= len(lines):

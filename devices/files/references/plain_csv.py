@@ -34,13 +34,7 @@ def is_csv(_path: Path, head: bytes) -> bool:
 
 
 def read_plain_csv(path: Path) -> ReferenceFile:
-    """Read angles, events or strides, by what the columns are.
-
-    Raises
-    ------
-    FileRefusedError
-        None of them, or a table that is not what it claims to be.
-    """
+    """Read angles, events or strides by their columns; raises FileRefusedError where it is none of them."""
     _, names = header_of(path, path.name, comment=COMMENT, delimiters=DELIMITERS)
     joints = {joint: name for joint in Joint for name in (str(joint), f"{joint}_deg") if name in names}
     if TIME in names and joints:

@@ -32,15 +32,7 @@ SOURCES = ("angles", "markers", "events", "strides")
 
 
 def read_reference(path: Path) -> ReferenceFile:
-    """Read one reference file of whatever format it is.
-
-    Raises
-    ------
-    FileRefusedError
-        It is none of them, or not what it claims to be.
-    OSError
-        It cannot be read.
-    """
+    """Read one reference file of any format; raises FileRefusedError for none, OSError where unreadable."""
     if path.is_dir():
         raise FileRefusedError(path.name, "this is a folder", "Give the reference file")
     if not path.exists():

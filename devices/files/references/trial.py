@@ -16,19 +16,12 @@ JOINTS = {"hip": "hip", "kne": "knee", "knee": "knee", "ank": "ankle", "ankle": 
 class ReferenceTrial:
     """One trial of a reference, on its own clock; any part may be empty.
 
-    Attributes
-    ----------
-    name
-        A recording's, where the file gives one.
-    angles : joint -> (time_s (n,), angle_rad (n,))
-        NaN in gaps; either sign, any zero.
-    events : side -> event of EVENTS -> (k,)
-        Seconds, ascending.
-    strides : side -> (k, 3)
-        First and last instant in seconds, and length in metres.
+    `angles`: joint -> (time_s (n,), angle_rad (n,)): naN in gaps; either sign, any zero.
+    `events`: side -> event of EVENTS -> (k,): seconds, ascending.
+    `strides`: side -> (k, 3): first and last instant in seconds, and length in metres.
     """
 
-    name: str = ""
+    name: str = ""  # A recording's, where the file gives one
     angles: Mapping[Joint, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
     events: Mapping[Side, Mapping[str, FloatArray]] = field(default_factory=dict)
     strides: Mapping[Side, FloatArray] = field(default_factory=dict)

@@ -33,13 +33,7 @@ def is_visual3d(_path: Path, head: bytes) -> bool:
 
 
 def read_visual3d(path: Path) -> ReferenceFile:
-    """Read the hips, knees and ankles of every trial.
-
-    Raises
-    ------
-    FileRefusedError
-        No angle of them, no TIME, or a table that is not what it claims to be.
-    """
+    """Read the hips, knees and ankles of every trial; raises FileRefusedError without angles or TIME."""
     lines = lines_of(path)
     header = [[cell.strip() for cell in line.split("\t")] for line in lines[:HEADER_LINES]]
     count = max(map(len, header))

@@ -15,7 +15,8 @@ from app.patient_screen.window import PatientWindow
 from app.results.agreement_page import AgreementPage
 from app.results.correct_page import CorrectPage, JointLine, WalkLine
 from app.results.found_page import FoundPage
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailRow, StepState
@@ -32,7 +33,6 @@ from app.wizard.walking.timed_view import TimedViewState
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording.body import name_of
 from app.wording.translation import tr
-from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.results import Analysis
 from core.session import Session
@@ -41,11 +41,12 @@ from core.timed.found import TimedTest
 from core.timed.live import LiveReadout
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.diagnostics import diagnostics_of
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import visit_of
 from tests.app.idle_action import idle
 from tests.app.results.filled_pages import PAGES
 from tests.app.wizard.walking.bench_material import bench_visit
+from tests.simulated import analysis_of, session_of
 
 Make = Callable[[], QWidget]
 STEPS = ("Patient", "Sensors", "Stand still", "Free motion", "Walking", "Results", "Report")
@@ -58,8 +59,8 @@ OVER_TEN_METRES = TimedTest(
 def analysed() -> tuple[Session, Analysis]:
     """Two walks of the simulated patient, under two conditions."""
     recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95), Walk("walk 2", strides=13))
-    session = simulate(replace(DEMONSTRATION, recordings=recordings)).session
-    return session, analyse(session)
+    session = session_of(replace(DEMONSTRATION, recordings=recordings))
+    return session, analysis_of(session)
 
 
 def results(view: str, *opened: str) -> Make:

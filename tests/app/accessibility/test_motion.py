@@ -34,11 +34,6 @@ def _moving_system(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     set_theme(replace(current_theme(), has_less_motion=False))
 
 
-@pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-
-
 def test_either_the_setting_or_the_system_takes_the_time_of_a_transition(monkeypatch: pytest.MonkeyPatch) -> None:
     assert motion.duration_ms(120, Theme()) == 120
     assert motion.duration_ms(120, Theme(has_less_motion=True)) == 0

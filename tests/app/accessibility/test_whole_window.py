@@ -49,7 +49,7 @@ def home(qtbot: QtBot, controller: LibraryController, untouched: Path, tmp_path:
         home.show()
         home.activateWindow()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE))
     home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     yield home
@@ -77,8 +77,8 @@ def ways(home: Home) -> dict[str, Callable[[], object]]:
         "home": home.focus,
         "settings": home.show_settings,
         "questions": lambda: home.rail.step_pressed.emit(QUESTIONS),
-        "goals": home.page.panel.goals_requested.emit,
-        "analyse again": home.page.panel.analysing_requested.emit,
+        "goals": home.page.panel.goals.clicked.emit,
+        "analyse again": home.page.panel.analyse_again.triggered.emit,
     }
 
 

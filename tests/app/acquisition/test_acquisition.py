@@ -27,17 +27,11 @@ from tests.safety.live_material import (
     open_journal,
     read_back,
 )
+from tests.waiting import wait_for
 
 PATIENCE_S = 20.0
 
 Start = Callable[..., Acquisition]
-
-
-def wait_for(is_so: Callable[[], bool]) -> None:
-    give_up_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.002)
 
 
 def played(name: str = "a", sensors: int = 2, **settings: object) -> ReplaySource:

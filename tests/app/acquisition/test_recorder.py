@@ -15,26 +15,25 @@ from app.acquisition.recorder import Recorder
 from app.storage.exchange import session_with_samples
 from app.storage.journal.disk import JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError
-from app.storage.keys import KeySlots
-from app.storage.layout import DATABASE, KEYS
+from app.storage.layout import DATABASE
 from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import find_interrupted
-from app.storage.slots import Cost
-from app.storage.stored import LibraryBusyError, LibraryError, Operator, PlacedSensor, RecordingState, Role
-from core.analysis import analyse
+from app.storage.stored import LibraryBusyError, LibraryError, PlacedSensor, RecordingState
 from core.body import Joint, Site
 from core.results import Analysis
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.replay import ReplayFaults, ReplaySource
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
+from tests.quick_library import quick_library
 from tests.safety.live_material import Clock, numbered_session
+from tests.simulated import analysis_of, simulation_of
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 ANY_ROOM = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
-PATIENCE_S = 20.0
 LEFT_THIGH, LEFT_SHANK, LEFT_FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 
 
@@ -42,10 +41,9 @@ LEFT_THIGH, LEFT_SHANK, LEFT_FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> OpenedLibrary:
     """A new library whose one operator is `hk`, closed."""
     folder = tmp_path_factory.mktemp("untouched")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
-    library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
-    library.close()
-    return OpenedLibrary(library, folder, data_key)
+    opened = quick_library(folder)
+    opened.library.close()
+    return opened
 
 
 def reopened(opened: OpenedLibrary) -> OpenedLibrary:
@@ -89,13 +87,6 @@ def session_id(opened: OpenedLibrary) -> UUID:
     return visit_of(opened, numbered_session("a", 2))
 
 
-def wait_for(is_so: Callable[[], bool]) -> None:
-    give_up_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.002)
-
-
 def differences(one: object, other: object, where: str = "") -> list[str]:
     """Where two results are not the same, to the last bit."""
     if type(one) is not type(other):
@@ -125,7 +116,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
     """With losses, a sensor that was silent for a while, and one whose stamps are late."""
     clock = Clock()
     required = (Standing(), FreeMotion(duration_s=9.0), Walk(strides=6))
-    simulated = simulate(WalkerSettings(seed=2, sites=(LEFT_THIGH, LEFT_SHANK, LEFT_FOOT), recordings=required))
+    simulated = simulation_of(WalkerSettings(seed=2, sites=(LEFT_THIGH, LEFT_SHANK, LEFT_FOOT), recordings=required))
     session = simulated.session
     late, silent = (block.sensor for block in list(session.recordings[0].imu.values())[1:3])
     faults = ReplayFaults(loss_share=0.01, lag_s={late: 0.02}, silent_s={silent: (6.0, 6.5)}, seed=4)
@@ -151,7 +142,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
         assert all(is_part_of(recording.imu[site], played.imu[site]) for site in played.imu)
 
     visit = opened.library.sessions.get(visit_id)
-    first = analyse(Session(tuple(live), visit.details.patient, visit.details.sensors, is_simulated=True))
+    first = analysis_of(Session(tuple(live), visit.details.patient, visit.details.sensors, is_simulated=True))
     opened.library.close()
     with reopened(opened) as later:
         stored_visit = later.library.sessions.get(visit_id)
@@ -159,7 +150,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
     assert again.is_simulated
     assert again.findings == ()
     assert differences(tuple(live), again.recordings) == []
-    assert differences(first, analyse(again)) == []
+    assert differences(first, analysis_of(again)) == []
     assert rms_error_deg(simulated, live[-1], first, Joint.LEFT_KNEE) < 1.0
 
 

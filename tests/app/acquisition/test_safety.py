@@ -32,6 +32,7 @@ from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import faults_of, numbered_session, open_journal, read_back
 from tests.safety.long_recording import record_long
 from tests.safety.source_vanishes import vanish_often
+from tests.safety.vanishing import BACK
 
 SENSORS = 6
 BUSY = "while True: pass"
@@ -75,7 +76,7 @@ def check(acquisition: Acquisition, summary: JournalSummary, least_s: float) -> 
 def test_twenty_sources_that_vanish_come_back_within_three_seconds(tmp_path: Path) -> None:
     vanished = vanish_often(tmp_path, 20, seed=2)
     assert vanished.faults == []
-    assert len(vanished.back_ms) == 20
+    assert len(vanished.figures[BACK]) == 20
 
 
 # T7: hours

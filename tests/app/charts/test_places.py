@@ -7,7 +7,7 @@ import pytest
 
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.places import Box, Ground, MarkPlace, line_of, place_hidden, place_labels, place_mark
+from app.charts.places import Box, ChartGround, MarkPlace, line_of, place_hidden, place_labels, place_mark
 from core.samples import FloatArray
 
 FRAME = Frame(40, 24, 428, 150, -10, 80)
@@ -15,15 +15,15 @@ KNEE: FloatArray = 10 * np.exp(-(((PERCENT - 14) / 8) ** 2)) + 55 * np.exp(-(((P
 ONE_LINE, TWO_LINES = (90.0, 16.0), (170.0, 32.0)
 
 
-def ground_of(*curves: FloatArray, uprights: tuple[float, ...] = ()) -> Ground:
-    return Ground(FRAME, [line_of(FRAME, PERCENT, curve) for curve in curves], (), uprights)
+def ground_of(*curves: FloatArray, uprights: tuple[float, ...] = ()) -> ChartGround:
+    return ChartGround(FRAME, [line_of(FRAME, PERCENT, curve) for curve in curves], (), uprights)
 
 
 def ends(*points: tuple[float, float]) -> list[tuple[float, float]]:
     return [(float(FRAME.x(percent)), float(FRAME.y(angle))) for percent, angle in points]
 
 
-def length_covered(ground: Ground, box: Box) -> float:
+def length_covered(ground: ChartGround, box: Box) -> float:
     """How much of the curves lies in a box, px, found point by point."""
     total = 0.0
     for curve in ground.curves:
@@ -133,5 +133,5 @@ def test_a_label_leaves_a_bracket_and_the_box_of_a_hidden_curve_free() -> None:
 
 
 def test_where_a_plot_is_too_small_a_label_is_left_away() -> None:
-    tiny = Ground(Frame(0, 0, 60, 20, -10, 80), [])
+    tiny = ChartGround(Frame(0, 0, 60, 20, -10, 80), [])
     assert place_labels(tiny, [(30.0, 10.0)], [(200.0, 16.0)], [True], DOT) == [None]

@@ -14,11 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli import import_files as import_command
+from app.cli import arguments
 from app.cli import main as cli
-from app.cli import report as report_command
 from app.cli.main import main
 from app.exports import result_folder
+from app.exports.exports import Format
+from app.reports.agreement.folder import REPORT
+from app.storage.pseudonyms import Typed
 from app.summary import request
 from app.wording.findings import SENTENCES
 from core.body import Site
@@ -189,11 +191,14 @@ def test_help_comes_without_the_heavy_libraries() -> None:
 
 
 def test_the_choices_are_those_of_the_core() -> None:
-    assert tuple(Method) == cli.METHODS
-    assert tuple(RecordingKind) == import_command.KINDS
-    assert tuple(FORMATS) == import_command.FORMATS
-    assert report_command.PAPERS == request.PAPERS
-    assert cli.DEFAULT_TAU_S == DEFAULT_TAU_S
+    assert tuple(Method) == arguments.METHODS
+    assert tuple(RecordingKind) == arguments.KINDS
+    assert tuple(FORMATS) == arguments.IMPORTED
+    assert arguments.PAPERS == request.PAPERS
+    assert arguments.DEFAULT_TAU_S == DEFAULT_TAU_S
+    assert tuple(Format) == arguments.EXPORTED
+    assert tuple(Typed) == arguments.TYPED
+    assert arguments.AGREEMENT == REPORT
 
 
 def test_without_a_screen_the_window_states_so(

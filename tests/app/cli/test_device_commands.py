@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.devices import EMULATED, MOVEMENTS, emulate, list_devices
+from app.cli.arguments import EMULATED
+from app.cli.devices import MOVEMENTS, emulate, list_devices
 from app.cli.main import main
 from core.body import Site
 from core.session import RecordingKind
@@ -16,6 +17,7 @@ from devices.catalogue import DRIVERS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient
 from devices.transport.ports import MORE_PORTS
 from tests.safety.port_vanishes import vanish_often
+from tests.safety.vanishing import BACK
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -66,4 +68,4 @@ def test_a_kind_that_is_not_known_is_refused(capsys: pytest.CaptureFixture[str])
 def test_a_port_vanishes_and_comes_back_while_the_others_lose_nothing(tmp_path: Path, count: int) -> None:
     vanished = vanish_often(tmp_path, count, seed=3)
     assert vanished.faults == []
-    assert len(vanished.back_ms) == count
+    assert len(vanished.figures[BACK]) == count

@@ -76,7 +76,7 @@ def test_a_table_that_is_not_there_is_refused(tmp_path: Path, capsys: pytest.Cap
 
 
 def test_the_question_of_its_help_can_be_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from app.cli.query import EXAMPLE
+    from app.cli.arguments import EXAMPLE
 
     path = write_rows(random_rows(1, 5), tmp_path / "p.parquet")
     assert main(["query", EXAMPLE, "--in", str(path)]) == 0

@@ -10,8 +10,9 @@ import pytest
 from app.cli.main import main
 from core.verdicts.own_figures import figures_from_json
 from devices.files.session_folder import write_session
-from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings
 from tests.app.batch_material import write_swinging
+from tests.simulated import session_of
 
 
 def last_line(capsys: pytest.CaptureFixture[str]) -> str:
@@ -46,7 +47,7 @@ def test_five_simulated_people_attached_twice_give_figures_and_files(
     )
     for number in range(5):
         settings = WalkerSettings(seed=100 + number, tissue=Tissue.REAL, variation=PEOPLE, recordings=again)
-        session = simulate(settings).session
+        session = session_of(settings)
         of = replace(session.patient, code=f"H-{number}")
         write_session(replace(session, patient=of, started="2026-11-12T10:00:00"), tmp_path / "in" / f"H-{number}")
     assert main(["repeatability", str(tmp_path / "in"), "--out", str(tmp_path / "out")]) == 0

@@ -16,6 +16,7 @@ from app.storage.opened import OpenedLibrary, create_library
 from app.storage.stored import LibraryError, Limits, Operator, Role
 from app.summary.course import CourseCondition, change
 from app.summary.course_words import NextKind
+from app.system.progress import nobody
 from app.wizard.resuming import read_analysed, read_recordings
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import LEG_SITES, Joint, Side
@@ -50,10 +51,6 @@ def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
     with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as opened:
         add_patients(opened, simulated_patients(NOW))
         yield opened
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 def test_patients_are_listed_with_the_first_one_first(opened: OpenedLibrary) -> None:
@@ -111,7 +108,7 @@ def test_the_whole_library_shows_what_it_is_made_to_show(opened: OpenedLibrary) 
     for patient in simulated_patients(NOW):
         for visit in patient.visits:
             session_id = take_in(opened, visit, record_visit(visit))
-            analyses.setdefault(visit.code, []).append(read_analysed(opened, session_id, silent)[1])
+            analyses.setdefault(visit.code, []).append(read_analysed(opened, session_id, nobody)[1])
     ids = {one.details.code: one.id for one in opened.library.patients.search()}
     _knee_is_replaced(read_patient(opened, ids["DEMO-KNEE"]))
     _is_after_stroke(read_patient(opened, ids["DEMO-STROKE"]))

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from app.exports.result_folder import write_results
-from core.analysis import analyse
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 NAME = "Miller"
 
@@ -17,7 +17,7 @@ NAME = "Miller"
 @pytest.fixture(scope="session")
 def visit() -> tuple[Session, Analysis]:
     """A visit in which everything that can be typed holds a name."""
-    session = simulate(WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))).session
+    session = session_of(WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12))))
     recordings = tuple(
         replace(r, name=f"{r.name} {NAME}", folder=f"{r.folder}_{NAME}", note=NAME, condition="=barefoot")
         for r in session.recordings
@@ -30,7 +30,7 @@ def visit() -> tuple[Session, Analysis]:
         notes=NAME,
         started="2026-11-21T10:00:00+01:00",
     )
-    return session, analyse(session)
+    return session, analysis_of(session)
 
 
 @pytest.fixture(scope="session")

@@ -12,13 +12,13 @@ from app.exports.columns import COLUMNS, KNOWN, column_of
 from app.exports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tables, write_results
 from app.summary.differences import comparisons_of, rows_of, write_compared_cycles, write_differences
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.analysis import analyse
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
 from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 Row = dict[str, str]
 
@@ -26,7 +26,7 @@ Row = dict[str, str]
 @pytest.fixture(scope="module")
 def visit() -> tuple[Session, Analysis]:
     required = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
-    session = simulate(WalkerSettings(seed=5, recordings=required)).session
+    session = session_of(WalkerSettings(seed=5, recordings=required))
     conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
     note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
     turned = AlignmentChange("shoes", (PartChange(ProsthesisPart.PYLON, turns=0.5, height_mm=3.0, text="=1"),))
@@ -43,7 +43,7 @@ def visit() -> tuple[Session, Analysis]:
     agreed = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5))
     patient = replace(session.patient, goals=(agreed,))
     session = replace(session, recordings=recordings, patient=patient, started="2026-02-01")
-    return session, analyse(session)
+    return session, analysis_of(session)
 
 
 @pytest.fixture(scope="module")

@@ -17,17 +17,12 @@ from app.exports.result_folder import write_results
 from app.exports.spreadsheet import write_spreadsheet
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.opened import OpenedLibrary
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
-from core.analysis import analyse
 from core.body import Side
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.session import Patient, Session
+from tests.quick_library import quick_library
+from tests.simulated import analysis_of
 
 TYPED = Patient(
     code="P 17",
@@ -234,7 +229,7 @@ def test_ten_strides_are_final_and_nine_are_not(
         for r in session.recordings
     )
     session = replace(session, recordings=recordings)
-    export_from_folder(session, analyse(session), [Format.FHIR], tmp_path)
+    export_from_folder(session, analysis_of(session), [Format.FHIR], tmp_path)
     reported = [entry["resource"] for entry in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
     (stance,) = (
         one
@@ -271,8 +266,7 @@ def test_a_sex_that_fhir_knows_is_reported(visit: tuple[Session, Analysis], tmp_
 def test_an_export_shows_how_far_it_is(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
     folder = tmp_path / "library"
     folder.mkdir()
-    key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
-    opened = OpenedLibrary(Library.create(folder, key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)), folder, key)
+    opened = quick_library(folder)
     session, analysis = visit
     reported: list[tuple[float, str]] = []
     with opened:

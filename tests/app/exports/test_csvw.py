@@ -13,8 +13,8 @@ import pytest
 
 from app.exports.csvw import METADATA
 from app.exports.result_folder import TAKEN, write_results
-from core.analysis import analyse
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 PARSED: Mapping[str, Callable[[str], object]] = {
     "number": float,
@@ -27,8 +27,8 @@ PARSED: Mapping[str, Callable[[str], object]] = {
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out")
-    session = simulate(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=5)))).session
-    write_results(session, analyse(session), folder)
+    session = session_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=5))))
+    write_results(session, analysis_of(session), folder)
     return folder
 
 

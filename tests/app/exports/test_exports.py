@@ -23,13 +23,10 @@ from app.exports.exports import (
 from app.storage.audit import about
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
-from app.storage.slots import Cost
-from app.storage.stored import Action, LibraryError, Operator, Role
+from app.storage.stored import Action, LibraryError
+from app.system.progress import nobody
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.goals import Goal, GoalOf
 from core.results import Analysis
@@ -37,12 +34,9 @@ from core.session import Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
+from tests.quick_library import quick_library
 
 NAME = "Miller"
-
-
-def silent(share: float, what: str) -> None:
-    """Report nobody."""
 
 
 def everything_in(folder: Path) -> str:
@@ -65,8 +59,7 @@ def files_in(folder: Path) -> list[str]:
 def opened(tmp_path: Path) -> OpenedLibrary:
     folder = tmp_path / "library"
     folder.mkdir()
-    key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
-    return OpenedLibrary(Library.create(folder, key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)), folder, key)
+    return quick_library(folder)
 
 
 @pytest.mark.endurance
@@ -249,12 +242,12 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
     session, analysis = visit
     with opened:
         room = Room(start_bytes=0, kept_bytes=0)
-        session_id = import_session(opened, session, silent, code=f"DEMO-{NAME}", room=room).session_id
+        session_id = import_session(opened, session, nobody, code=f"DEMO-{NAME}", room=room).session_id
         stated = []
         for name in ("one", "other"):
             (tmp_path / name).mkdir()
             formats = [Format.FHIR, Format.MOT]
-            export_from_library(opened, session_id, formats, tmp_path / name, {}, silent, analysed=lambda _: analysis)
+            export_from_library(opened, session_id, formats, tmp_path / name, {}, nobody, analysed=lambda _: analysis)
             stated.append(everything_in(tmp_path / name))
         assert stated[0] == stated[1]
         assert NAME not in stated[0]
@@ -271,14 +264,14 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
             [Format.XLSX],
             tmp_path,
             {},
-            silent,
+            nobody,
             analysed=lambda _: analysis,
             kept=[Typed.CONDITIONS],
         )
         noted = opened.library.audit.entries(about("session", session_id))
         assert json.loads(noted[-1].details)["typed"] == "conditions"
         with pytest.raises(LibraryError):
-            export_from_library(opened, uuid4(), [Format.MOT], tmp_path, {}, silent)
+            export_from_library(opened, uuid4(), [Format.MOT], tmp_path, {}, nobody)
 
 
 def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp_path: Path) -> None:

@@ -12,20 +12,20 @@ import pytest
 
 from app.exports.fitting_csv import fitting_means, fitting_of_side, write_fitting_strides
 from app.summary.measures import Measure
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import RecordingAnalysis
 from core.verdicts.model import Assessment, LegVerdicts, Verdict
 from core.verdicts.quantities import FITTING
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, simulation_of
 
 BAD = Assessment(Verdict.NOT_REPORTED)
 
 
 @pytest.fixture(scope="module")
 def walk() -> RecordingAnalysis:
-    made = simulate(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=6))))
-    return analyse(made.session).recordings[-1]
+    made = simulation_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=6))))
+    return analysis_of(made.session).recordings[-1]
 
 
 def strides_in(walk: RecordingAnalysis, folder: Path) -> list[dict[str, str]]:

@@ -17,17 +17,18 @@ from core.calibration import clinical_sign
 from core.results import Analysis
 from core.verdicts.gates import judged
 from core.verdicts.quantities import PARAMETERS, both_sides, mean_curve, values_of
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of, simulation_of
 
 
 @pytest.fixture(scope="module")
 def walked() -> SimulatedSession:
-    return simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), clock_late_s={Site.LEFT_FOOT: 0.03}))
+    return simulation_of(WalkerSettings(seed=4, recordings=(Standing(), Walk()), clock_late_s={Site.LEFT_FOOT: 0.03}))
 
 
 @pytest.fixture(scope="module")
 def found(walked: SimulatedSession) -> Analysis:
-    return analyse(walked.session)
+    return analysis_of(walked.session)
 
 
 @pytest.fixture(scope="module")
@@ -115,8 +116,8 @@ def test_symmetry_compares_the_affected_side_with_the_sound_one(walked: Simulate
 
 def test_without_a_foot_sensor_steps_come_from_the_shank_and_say_so(tmp_path: Path) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK)
-    walked = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=sites))
-    found = analyse(walked.session)
+    walked = simulation_of(WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=sites))
+    found = analysis_of(walked.session)
     write_gait(found.recordings[0], tmp_path)
     names = {row["event"] for row in rows(tmp_path / "events.csv")}
     assert names == {"initial_contact", "toe_off"}
@@ -145,8 +146,10 @@ def test_events_at_one_instant_stand_in_the_order_of_the_stride(found: Analysis)
 
 
 def test_feet_alone_give_events_and_no_angles(tmp_path: Path) -> None:
-    walked = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=(Site.LEFT_FOOT, Site.RIGHT_FOOT)))
-    found = analyse(walked.session)
+    walked = simulation_of(
+        WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=(Site.LEFT_FOOT, Site.RIGHT_FOOT))
+    )
+    found = analysis_of(walked.session)
     assert [one.joints for one in found.calibrations if one.joints] == []
     assert dict(found.recordings[0].joints) == {}
     write_gait(found.recordings[0], tmp_path)
@@ -168,8 +171,8 @@ def test_the_score_is_the_distance_of_the_mean_cycle_from_the_group(found: Analy
 
 
 def test_without_a_zero_or_without_strides_there_is_no_score(found: Analysis) -> None:
-    walked = simulate(WalkerSettings(seed=4, recordings=(Walk(),)))
-    summary = summarise(analyse(walked.session))
+    walked = simulation_of(WalkerSettings(seed=4, recordings=(Walk(),)))
+    summary = summarise(analysis_of(walked.session))
     assert summary["joints"]["left_knee"]["zero"] == "none"
     assert summary["walks"]["walk 1"]["left"]["gait_variable_score_deg"] == {"knee": None, "ankle": None}
     nobody = {side: replace(gait, cycles={}) for side, gait in found.recordings[0].gait.items()}
@@ -181,7 +184,7 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clinical_sign, "MIN_RANGE_RAD", np.deg2rad(20.0))  # the stiff knee moves by some 15
-    stiff = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), stiff_knee_side=Side.LEFT))
+    stiff = simulation_of(WalkerSettings(seed=4, recordings=(Standing(), Walk()), stiff_knee_side=Side.LEFT))
     found = analyse(stiff.session)
     assert ("clinical_sign_uncertain", "left_knee") in {(finding.key, finding.where) for finding in found.findings}
     write_gait(found.recordings[0], tmp_path)
@@ -207,8 +210,8 @@ def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error
     assert (few["verdict"], few["error_deg"]) == ("too_few_strides", None)  # under 10 of a side
     assert few["difference_deg"] is not None
 
-    long = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=16))))
-    walk = summarise(analyse(long.session))["walks"]["walk 1"]
+    long = simulation_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=16))))
+    walk = summarise(analysis_of(long.session))["walks"]["walk 1"]
     reported = walk["both"]["side_difference"]
     assert set(reported) == {name for name in PARAMETERS if name.endswith("_deg")}
     sides = [walk[side]["knee_swing_peak_deg_mean"] for side in ("left", "right")]
@@ -221,8 +224,8 @@ def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error
     # of the ankle no more than healthy legs' 6.2, chance added
     assert 6.2 < reported["ankle_range_deg"]["error_deg"] < 6.8
 
-    stiff = simulate(WalkerSettings(seed=4, recordings=(Walk(strides=16),), stiff_knee_side=Side.LEFT))
-    both = summarise(analyse(stiff.session))["walks"]["walk 1"]["both"]
+    stiff = simulation_of(WalkerSettings(seed=4, recordings=(Walk(strides=16),), stiff_knee_side=Side.LEFT))
+    both = summarise(analysis_of(stiff.session))["walks"]["walk 1"]["both"]
     # without a zero a range is all that can be compared
     assert both["side_difference"]["knee_swing_peak_deg"] is both["curve_difference_deg"]["knee"] is None
     assert both["side_difference"]["knee_range_deg"]["verdict"] == "exceeds_error"
@@ -230,7 +233,7 @@ def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error
 
 def test_without_standing_a_joint_has_ranges_and_no_angles() -> None:
     recordings = (FreeMotion(), Walk(strides=8))
-    walk = analyse(simulate(WalkerSettings(seed=2, recordings=recordings)).session).recordings[-1]
+    walk = analysis_of(session_of(WalkerSettings(seed=2, recordings=recordings))).recordings[-1]
     for side, gait in walk.gait.items():
         used = gait.strides.is_used
         for name in ("knee_range_deg", "ankle_range_deg", "knee_swing_peak_percent", "stride_length_m"):

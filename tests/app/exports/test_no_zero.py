@@ -15,21 +15,21 @@ import pytest
 
 from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint
-from devices.simulation.walker import FreeMotion, SimulatedSession, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Walk, WalkerSettings
+from tests.simulated import analysis_of, simulation_of
 
 
 @pytest.fixture(scope="module")
 def simulated() -> SimulatedSession:
     """A patient who never stood still for it."""
-    return simulate(WalkerSettings(seed=2, recordings=(FreeMotion(), Walk(strides=13))))
+    return simulation_of(WalkerSettings(seed=2, recordings=(FreeMotion(), Walk(strides=13))))
 
 
 @pytest.fixture(scope="module")
 def folder(simulated: SimulatedSession, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("no_zero")
-    analysis = analyse(simulated.session)
+    analysis = analysis_of(simulated.session)
     lines = export_from_folder(simulated.session, analysis, list(Format), place, is_identified=True)
     (place / "lines").write_text("\n".join(lines), encoding="utf-8")
     write_results(simulated.session, analysis, place)

@@ -17,12 +17,12 @@ import pytest
 
 from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis
 from core.samples import FloatArray
 from core.session import Session
-from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, simulation_of
 
 MOT = {
     "knee_angle_l": Joint.LEFT_KNEE,
@@ -58,7 +58,7 @@ UCUM = {
 def truth() -> RecordingTruth:
     """What the walk of the fixture `visit` was made of."""
     settings = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
-    return simulate(settings).truth.recordings["walk 1"]
+    return simulation_of(settings).truth.recordings["walk 1"]
 
 
 @pytest.fixture(scope="module")
@@ -154,8 +154,8 @@ def test_the_events_of_the_c3d_are_those_of_the_foot_that_they_name(
 
 @pytest.mark.endurance
 def test_times_over_a_minute_are_minutes_and_seconds_in_a_c3d(tmp_path: Path) -> None:
-    made = simulate(WalkerSettings(seed=3, recordings=(Standing(), Walk(strides=12, standing_before_s=52.0))))
-    export_from_folder(made.session, analyse(made.session), [Format.C3D], tmp_path)
+    made = simulation_of(WalkerSettings(seed=3, recordings=(Standing(), Walk(strides=12, standing_before_s=52.0))))
+    export_from_folder(made.session, analysis_of(made.session), [Format.C3D], tmp_path)
     (file,) = tmp_path.glob("walk*/angles.c3d")
     reported = ezc3d.c3d(str(file))["parameters"]["EVENT"]
     minutes, seconds = reported["TIMES"]["value"]

@@ -12,7 +12,7 @@ from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
 from core.session import Recording, RecordingKind, Session
-from devices.files.answers import details_of_trial, trial_from
+from devices.files.answers import details_of, value_from
 from devices.files.formats import format_of, read_trial
 from devices.files.imports import add_recording, place_sensors
 from devices.files.refusal import FileRefusedError
@@ -61,7 +61,7 @@ def test_every_file_that_can_be_read_again_states_who_was_measured(
     assert read_session(tmp_path / "session").is_simulated is is_simulated
     for trial in found.values():  # as it comes from the process that reads, and as the window makes a session of it
         arrays: list[object] = []
-        assert trial_from(details_of_trial(trial, arrays), arrays).is_simulated is is_simulated  # type: ignore[arg-type]  # of any kind
+        assert value_from(ImportedTrial, details_of(trial, arrays), arrays).is_simulated is is_simulated  # type: ignore[arg-type]  # of any kind
         (draft,) = drafts_of([("walk", trial)])
         sites = dict(zip((one.key for one in draft.sensors), SITES, strict=False))
         assert session_of(draft, [RecordingKind.WALKING], sites).is_simulated is is_simulated

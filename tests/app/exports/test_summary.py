@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.exports.summary import FORMAT, read_summary, summarise, write_summary
+from app.exports.summary import FORMAT, summarise, write_summary
+from app.system.tables import read_json
 from core.body import Joint
 from core.findings import Finding, Severity
 from core.results import (
@@ -121,7 +122,7 @@ def test_a_session_without_joints_is_a_summary_all_the_same(tmp_path: Path) -> N
     path = tmp_path / "summary.json"
     write_summary(Analysis(Method.PUBLISHED, False, (), ()), path)
     empty: dict[str, object] = {"joints": {}, "calibrations": [], "walks": {}, "findings": []}
-    summary = read_summary(path)
+    summary = read_json(path, FORMAT)
     assert summary is not None
     assert summary.pop("reference_group")["group"] == "young adults, barefoot, treadmill"
     assert summary.pop("error_figures") == {"source": "published"}
@@ -131,8 +132,8 @@ def test_a_session_without_joints_is_a_summary_all_the_same(tmp_path: Path) -> N
 @pytest.mark.parametrize("content", [b"", b"[1]", b'{"format": "other/1"}', b"\xff\xfe\x00", b'{"format": '])
 def test_a_file_of_another_program_is_no_summary(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "summary.json").write_bytes(content)
-    assert read_summary(tmp_path / "summary.json") is None
-    assert read_summary(tmp_path / "missing.json") is None
+    assert read_json(tmp_path / "summary.json", FORMAT) is None
+    assert read_json(tmp_path / "missing.json", FORMAT) is None
 
 
 def test_names_in_any_script_survive(tmp_path: Path) -> None:
@@ -147,6 +148,6 @@ def test_a_name_that_is_no_text_is_still_json(tmp_path: Path) -> None:
         "file_left_out", Severity.INFO, "walk 1", {"name": b"caf\xe9.csv".decode(errors="surrogateescape")}
     )
     write_summary(Analysis(Method.ROBUST, False, (), (), (finding,)), tmp_path / "summary.json")
-    summary = read_summary(tmp_path / "summary.json")
+    summary = read_json(tmp_path / "summary.json", FORMAT)
     assert summary is not None
     assert summary["findings"][0]["numbers"]["name"] == "caf\udce9.csv"

@@ -15,16 +15,16 @@ from app.reports.patient.trend_page import charts_of_tests
 from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
-from core.analysis import analyse
 from core.body import Side, Site
 from core.results import Analysis
 from core.session import RecordingKind, Session
 from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course as course_of_walks
 from tests.app.course_material import timed
 from tests.app.reports.patient.conftest import MADE_AT
+from tests.simulated import analysis_of, session_of
 
 TWO = TimedTest(
     protocol=TimedProtocol.TWO_MINUTES,
@@ -50,13 +50,13 @@ TWO = TimedTest(
 def visit() -> AnalysedVisit:
     """Two walks of the demonstration, the second a test."""
     walks = (Walk(strides=12, standing_before_s=2.0), Walk("walk 2", strides=14, standing_before_s=2.0))
-    session = simulate(replace(DEMONSTRATION, recordings=(Standing(), *walks))).session
+    session = session_of(replace(DEMONSTRATION, recordings=(Standing(), *walks)))
     reported = tuple(
         replace(one, condition="=shoes", test=PlannedTest(TimedProtocol.TEN_METRES) if one.name == "walk 2" else None)
         for one in session.recordings
     )
     session = replace(session, recordings=reported)
-    return AnalysedVisit(session, analyse(session))
+    return AnalysedVisit(session, analysis_of(session))
 
 
 def with_test(visit: AnalysedVisit, test: TimedTest | None) -> tuple[Session, Analysis]:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from babel.messages.pofile import read_po
 
-from app.cli.main import SUBCOMMANDS
+from app.cli.parser import SUBCOMMANDS
 from app.films.film import Film
 from app.help.help_topics import Topic, help_file, topic_title
 from app.summary.numbers_in_words import MARKS

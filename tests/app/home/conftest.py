@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -16,15 +15,9 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from tests.app.home.home_library import PASSPHRASE, open_library
-
-
-@pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
 
 
 @pytest.fixture
@@ -54,7 +47,6 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
-    load_fonts()
     home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)

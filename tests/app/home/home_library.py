@@ -15,7 +15,7 @@ WAIT_MS = 20_000  # on a busy machine
 
 def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder: Path) -> None:
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     (state,) = reported.args or []
     assert isinstance(state, OpenedState)
     home.show_library(state)

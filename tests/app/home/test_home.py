@@ -31,7 +31,6 @@ from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
 from app.storage.stored import LibraryError, PlacedSensor, RecordingState, Role, StoredJournal, StoredPatient
 from app.system.settings import Scheme, Settings
-from app.theme.current import load_fonts
 from app.widgets.button import Button
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
@@ -180,7 +179,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
-    home.page.import_requested.emit()
+    home.page.empty.importing.clicked.emit()
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     assert home.importing.page.code.text == "P-0200"
@@ -213,7 +212,7 @@ def test_a_stopped_import_states_what_came_of_it_once_that_is_known(
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     home.importing.take_in()
-    home.working.stop_pressed.emit()
+    home.working.stop.click()
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text
     go_on.set()
@@ -294,7 +293,6 @@ def test_what_was_being_recorded_is_recovered_and_marked(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
 ) -> None:
     session_id = leave_open(folder)
-    load_fonts()
     home = Home(controller, settings)
     qtbot.addWidget(home)
     home.show()
@@ -355,7 +353,6 @@ def any_needs_look(home: Home) -> bool:
 
 
 def new_home(qtbot: QtBot, controller: LibraryController, settings: Settings) -> Home:
-    load_fonts()
     home = Home(controller, settings)
     qtbot.addWidget(home)
     home.show()
@@ -379,7 +376,6 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     leave_open(folder, has_row=False, states_session=True)
     leave_open(folder, has_row=False)
     leave_open(folder, has_row=False)
-    load_fonts()
     home = Home(controller, settings)
     qtbot.addWidget(home)
     home.show()
@@ -585,7 +581,7 @@ def test_an_operator_is_added_and_may_log_in(
     qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     controller.close()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(folder, "first words for now", "vi")
+        controller.open(lambda holder: holder.open(folder, "first words for now", "vi"))
     (state,) = reported.args or []
     assert state.operator.role is Role.VIEWER
     home.show_library(state)

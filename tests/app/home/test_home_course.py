@@ -21,15 +21,16 @@ from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import Action, StoredPatient
 from app.summary.course_lanes import SPEED_LANE
+from app.system.progress import nobody
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
 from core.session import Patient
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
+from tests.simulated import session_of
 
 WAIT_MS = 20_000
 
@@ -41,7 +42,6 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouched: Path, tmp_path: Path) -> Home:
-    load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     home = Home(controller, settings)
     home.resize(1280, 800)
@@ -49,7 +49,7 @@ def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouc
     home.show()
     folder = shutil.copytree(untouched, tmp_path / "library")
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as known:
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     home.show_library((known.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     return home
@@ -61,10 +61,6 @@ def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
     folder = tmp_path / "opened"
     with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as library:
         yield library
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot, home: Home) -> None:
@@ -150,12 +146,12 @@ def reading(opened: OpenedLibrary) -> PatientReading:
 def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: OpenedLibrary) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    known = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    known = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     known = replace(known, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
-    session_id = import_session(opened, known, silent).session_id
+    session_id = import_session(opened, known, nobody).session_id
     now = day_and_time("2026-06-25T09:00:00")
     assert [visit.course for visit in reading(opened).visits(now)] == [None]
-    assert compute_courses(opened, [session_id], silent) == 0
+    assert compute_courses(opened, [session_id], nobody) == 0
     (visit,) = reading(opened).visits(now)
     assert visit.course is not None
     assert visit.course.conditions[0].strides > 0
@@ -165,7 +161,7 @@ def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: Ope
 
 
 def test_a_session_that_is_gone_is_counted(opened: OpenedLibrary) -> None:
-    assert compute_courses(opened, [uuid7()], silent) == 1
+    assert compute_courses(opened, [uuid7()], nobody) == 1
 
 
 def day_and_time(moment: str) -> datetime.datetime:

@@ -10,30 +10,23 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QFontInfo, QPalette
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
 from app.plots.angle_chart import AngleChart
 from app.results.found_page import FoundPage
-from app.results.result_page import (
-    ANSWER,
-    COMPARE,
-    STRIDES,
-    WHOLE,
-    ResultPage,
-)
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
+from app.summary.request import AnalysedVisit
 from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, set_dark, set_scale
 from app.widgets.findings_list import FindingRow
-from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from app.workers.background import Stopped, Work
-from app.workers.opening import Opened
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
 from core.results import (
@@ -48,7 +41,9 @@ from core.results import (
 )
 from core.samples import FloatArray
 from core.session import Patient, RecordingKind, Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
+from tests.app.room import is_cut
+from tests.simulated import analysis_of, session_of
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -106,9 +101,9 @@ def analysis(is_simulated: bool = False, has_orientation: bool = True) -> Analys
     return Analysis(Method.ROBUST, is_simulated, (calibrated,), recordings, SOME_FINDINGS)
 
 
-def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
+def opened(is_simulated: bool = False, has_orientation: bool = True) -> AnalysedVisit:
     patient = Patient(code="P-0147", birth_year=1968, sex="male", prosthetic_side="left")
-    return Opened(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
+    return AnalysedVisit(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
 
 
 @pytest.fixture
@@ -341,11 +336,11 @@ def test_simulated_is_stated_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     assert not window.header.simulated.isVisible()
-    assert not results.whole.charts.knee._simulated.isVisible()
+    assert not results.whole.charts.knee.simulated.isVisible()
     open_work(lambda _report: opened(is_simulated=True))
     qtbot.waitUntil(lambda: not window.is_working)
     assert window.header.simulated.isVisible()
-    assert results.whole.charts.knee._simulated.isVisible()
+    assert results.whole.charts.knee.simulated.isVisible()
 
 
 def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
@@ -418,23 +413,6 @@ def visible(window: QWidget) -> list[QWidget]:
     return [widget for widget in window.findChildren(QWidget) if widget.isVisible()]
 
 
-def is_cut(widget: QWidget) -> bool:
-    """Return whether a widget has less room than its words need."""
-    if isinstance(widget, QLabel):
-        margins = widget.contentsMargins()
-        room = widget.size().shrunkBy(margins)
-        flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
-        needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
-        return needed.width() > room.width() or needed.height() > room.height()
-    if isinstance(widget, CellTable):
-        is_narrow = any(widget.columnWidth(k) < need for k, need in enumerate(widget.needed_widths))
-        return is_narrow or widget.height() < widget.minimumSizeHint().height()
-    if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
-        need = widget.minimumSizeHint()
-        return need.width() > widget.width() or need.height() > widget.height()
-    return False
-
-
 def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
     """Return whether a widget can never be seen whole: beside the window, or wider than the page that scrolls."""
     left = widget.mapTo(window, QPoint(0, 0)).x()
@@ -442,11 +420,11 @@ def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
 
 
 @pytest.fixture(scope="module")
-def walked() -> Opened:
+def walked() -> AnalysedVisit:
     """A simulated session whose walk is long enough for a spread."""
     settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
-    session = simulate(settings).session
-    return Opened(session, analyse(session))
+    session = session_of(settings)
+    return AnalysedVisit(session, analysis_of(session))
 
 
 @pytest.mark.parametrize(
@@ -467,7 +445,7 @@ def test_every_word_fits(
     qtbot: QtBot,
     window: SessionScreen,
     open_work: OpenWork,
-    walked: Opened,
+    walked: AnalysedVisit,
     qapp: QApplication,
     size: tuple[int, int],
     scale: float,
@@ -480,7 +458,7 @@ def test_every_word_fits(
     set_scale(scale)
     window.banner.show_message("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.whole.charts.zoom(0.5)
-    results.whole.charts._read_at(4.0)
+    results.whole.charts.read_at(4.0)
     pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]
     behind = [(results, ANSWER, button) for button in (results.all_figures, results.door, results.quality.engineering)]
     others = [(page, view, None) for page, view in (*pages, (window.empty, ANSWER), (window.working, ANSWER))]

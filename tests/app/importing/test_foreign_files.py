@@ -17,9 +17,8 @@ from devices.files.session_folder import read_session
 ROOT = Path(__file__).parents[3]
 READERS = {"read_session", "write_session", "read_site", "parse", "parse_toml", "read_csv", "read_parquet"}
 OWN = {  # what they read was written by this program, a moment ago
-    ("app/cli/main.py", "_demo"),
-    ("app/importing/untrusted_files.py", "read_foreign_session"),
-    ("app/importing/untrusted_files.py", "write_over_session"),
+    ("app/cli/demo.py", ""),
+    ("app/importing/untrusted_files.py", ""),
 }
 TOML = 'format = "gaitwright-session/1"\n[[recordings]]\nname = "walk 1"\nkind = "walking"\nfolder = "walk_1"\n'
 COLUMNS = "time_s,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,gyr_x_rad_s,gyr_y_rad_s,gyr_z_rad_s\n"

@@ -15,7 +15,8 @@ from core.session import RecordingKind
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial
 from devices.files.xsens_mtmanager import mtmanager_trial
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 FindData = Callable[[str], Path]
 SITES = ("Left Thigh", "Left Shank", "Left Foot", "Right Thigh", "Right Shank", "Right Foot")
@@ -129,7 +130,7 @@ def test_two_sensors_at_one_site_are_refused() -> None:
 def simulated() -> dict[str, ImportedTrial]:
     """A visit whose sensors say nothing of where they were."""
     required = (Standing(), FreeMotion(), Walk())
-    made = simulate(WalkerSettings(recordings=required))
+    made = simulation_of(WalkerSettings(recordings=required))
     trials = {}
     for recording in made.session.recordings:
         sensors = [

@@ -38,7 +38,7 @@ def charts(qtbot: QtBot) -> CycleCharts:
 
 def shown(key: ChartKey, width: int) -> list[str]:
     key.resize(width, 24)
-    return [text.text for text in key.texts()]
+    return [text.text for text in key.painted_texts()]
 
 
 def test_the_reference_gives_way_before_the_thin_lines_date(key: ChartKey) -> None:
@@ -47,7 +47,7 @@ def test_the_reference_gives_way_before_the_thin_lines_date(key: ChartKey) -> No
     assert shown(key, 270) == ["No reference", "1 Jul"]
     assert shown(key, 190) == ["1 Jul"]
     assert shown(key, 110) == []
-    assert all(text.needed.width() <= text.box.width() for text in key.texts())
+    assert all(text.needed.width() <= text.box.width() for text in key.painted_texts())
 
 
 def test_the_key_is_read_out_with_what_has_no_room(key: ChartKey) -> None:

@@ -135,7 +135,7 @@ def test_visits_that_are_not_computed_are_computed_on_wish(qtbot: QtBot, page: H
     page.show_sessions((), visits)
     assert card.compute.isVisible()
     assert "1 visit is not calculated yet." in card.note.text()
-    with qtbot.waitSignal(page.computing_requested):
+    with qtbot.waitSignal(page.panel.course.computing_requested):
         QTest.mouseClick(card.compute, Qt.MouseButton.LeftButton)
 
 

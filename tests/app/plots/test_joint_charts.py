@@ -61,18 +61,18 @@ def test_axes_are_the_same_every_time(charts: JointCharts) -> None:
     assert ANKLE_DEG == (-30.0, 30.0)
     assert charts.knee.chart.range_deg == KNEE_DEG
     assert charts.ankle.chart.range_deg == ANKLE_DEG
-    assert charts.knee.chart._view.viewRange()[1] == list(KNEE_DEG)
+    assert charts.knee.chart.view_box.viewRange()[1] == list(KNEE_DEG)
 
 
 def test_an_axis_that_is_left_is_widened_and_states_so(charts: JointCharts) -> None:
-    assert not charts.knee._wide.isVisible()
+    assert not charts.knee.wide.isVisible()
     charts.show_joints({Joint.LEFT_KNEE: Curve(angle(93.0))})
     assert charts.knee.chart.range_deg == (-10.0, 100.0)
-    assert charts.knee._wide.isVisible()
-    assert "100°" in charts.knee._wide.text()
+    assert charts.knee.wide.isVisible()
+    assert "100°" in charts.knee.wide.text()
     charts.show_joints({Joint.LEFT_KNEE: Curve(angle(60.0))})
     assert charts.knee.chart.range_deg == KNEE_DEG
-    assert not charts.knee._wide.isVisible()
+    assert not charts.knee.wide.isVisible()
 
 
 def test_a_gap_is_drawn_as_a_gap(charts: JointCharts) -> None:
@@ -88,8 +88,8 @@ def test_a_gap_is_drawn_as_a_gap(charts: JointCharts) -> None:
 
 def test_a_leg_without_sensors_has_neither_curve_nor_key(charts: JointCharts) -> None:
     assert len(inked_columns(charts.ankle.chart, Side.RIGHT)) == 0
-    assert not charts.ankle._keys[Side.RIGHT].isVisible()
-    assert charts.ankle._keys[Side.LEFT].isVisible()
+    assert not charts.ankle.keys[Side.RIGHT].isVisible()
+    assert charts.ankle.keys[Side.LEFT].isVisible()
 
 
 def test_knee_and_ankle_share_their_time(charts: JointCharts) -> None:
@@ -120,39 +120,39 @@ def test_zooming_out_stops_at_the_whole(qtbot: QtBot, charts: JointCharts) -> No
 def test_arrows_read_from_sample_to_sample(qtbot: QtBot, charts: JointCharts) -> None:
     charts.zoom(0.02)
     QTest.keyClick(charts, Qt.Key.Key_Right)
-    here = charts._cursor_s
+    here = charts.cursor_s
     QTest.keyClick(charts, Qt.Key.Key_Right)
     assert here is not None
-    assert charts._cursor_s == pytest.approx(here + 0.01)
+    assert charts.cursor_s == pytest.approx(here + 0.01)
 
 
 def test_the_mouse_reads_values_with_their_certainty(charts: JointCharts) -> None:
-    charts._read_at(5.25)
+    charts.read_at(5.25)
     row = 25
-    assert charts.knee._moment.text() == "5.25 s"
-    assert charts.knee._values[Side.LEFT].text() == f"{angle(60)[row]:.1f}° ± 3.0°"
-    assert charts.knee._values[Side.RIGHT].text() == f"{angle(50)[row]:.1f}°"
-    assert charts.ankle._values[Side.RIGHT].text() == ""
+    assert charts.knee.moment.text() == "5.25 s"
+    assert charts.knee.values[Side.LEFT].text() == f"{angle(60)[row]:.1f}° ± 3.0°"
+    assert charts.knee.values[Side.RIGHT].text() == f"{angle(50)[row]:.1f}°"
+    assert charts.ankle.values[Side.RIGHT].text() == ""
 
 
 def test_the_mouse_over_the_plot_sets_the_reading_line(monkeypatch: pytest.MonkeyPatch, charts: JointCharts) -> None:
     monkeypatch.setattr(charts.knee.chart, "underMouse", lambda: True)
-    centre = charts.knee.chart._view.sceneBoundingRect().center()
+    centre = charts.knee.chart.view_box.sceneBoundingRect().center()
     charts.knee.chart.scene().sigMouseMoved.emit(QPointF(centre))
-    assert charts._cursor_s == pytest.approx(float(np.mean(charts.visible_s)), abs=0.02)
-    assert charts.ankle.chart._cursor.isVisible()
+    assert charts.cursor_s == pytest.approx(float(np.mean(charts.visible_s)), abs=0.02)
+    assert charts.ankle.chart.reading_line.isVisible()
 
 
 def test_inside_a_gap_no_value_is_read(charts: JointCharts) -> None:
-    charts._read_at(float(TIME_S[GAP.start + 5]))
-    assert charts.knee._values[Side.LEFT].text() == NO_VALUE
+    charts.read_at(float(TIME_S[GAP.start + 5]))
+    assert charts.knee.values[Side.LEFT].text() == NO_VALUE
 
 
 def test_simulated_is_on_every_chart(charts: JointCharts) -> None:
-    assert not charts.knee._simulated.isVisible()
+    assert not charts.knee.simulated.isVisible()
     charts.show_recording("walk 1", TIME_S, is_simulated=True)
-    assert charts.knee._simulated.isVisible()
-    assert charts.ankle._simulated.isVisible()
+    assert charts.knee.simulated.isVisible()
+    assert charts.ankle.simulated.isVisible()
 
 
 def test_the_charts_are_reported_in_words(charts: JointCharts) -> None:
@@ -164,7 +164,7 @@ def test_the_charts_are_reported_in_words(charts: JointCharts) -> None:
 def test_a_recording_without_samples_is_no_trouble(charts: JointCharts) -> None:
     charts.show_recording("walk 2", np.zeros(0), is_simulated=False)
     charts.show_joints({Joint.LEFT_KNEE: Curve(np.zeros(0))})
-    charts._step(1)
+    charts.step(1)
     assert "Left knee has no values." in charts.accessibleDescription()
 
 

@@ -95,35 +95,35 @@ def test_lanes_stand_on_the_time_of_the_curves(charts: JointCharts) -> None:
 
 
 def test_the_reading_line_names_phase_and_event(charts: JointCharts) -> None:
-    charts._read_at(1.86)
+    charts.read_at(1.86)
     assert charts.phases.reading_in_words() == "Left foot: foot flat. Right foot: swing."
-    charts._read_at(1.2)
+    charts.read_at(1.2)
     assert charts.phases.reading_in_words() == "Left foot: toe-off. Right foot: not known."
-    charts._read_at(1.6)
-    assert charts.phases._readings[Side.LEFT].text() == "initial contact"
+    charts.read_at(1.6)
+    assert charts.phases.readings[Side.LEFT].text() == "initial contact"
 
 
 def test_brackets_go_from_event_to_event_and_stop_at_the_last(charts: JointCharts) -> None:
     passed = []
     for _ in range(5):
         QTest.keyClick(charts, Qt.Key.Key_BracketRight)
-        passed.append(charts._cursor_s)
+        passed.append(charts.cursor_s)
     assert passed == pytest.approx([1.2, 1.6, 1.7, 2.1, 2.2])
     QTest.keyClick(charts, Qt.Key.Key_BracketLeft)
-    assert charts._cursor_s == pytest.approx(2.1)
+    assert charts.cursor_s == pytest.approx(2.1)
     for _ in range(60):
         QTest.keyClick(charts, Qt.Key.Key_BracketRight)
-    assert charts._cursor_s == pytest.approx(9.1)
+    assert charts.cursor_s == pytest.approx(9.1)
 
 
 def test_an_event_out_of_sight_is_brought_in(charts: JointCharts) -> None:
-    charts._read_at(1.0)
+    charts.read_at(1.0)
     charts.zoom(0.05)
     for _ in range(6):
         QTest.keyClick(charts, Qt.Key.Key_BracketRight)
     first, last = charts.visible_s
-    assert charts._cursor_s is not None
-    assert first <= charts._cursor_s <= last
+    assert charts.cursor_s is not None
+    assert first <= charts.cursor_s <= last
     assert last - first == pytest.approx(0.5)
 
 
@@ -131,7 +131,7 @@ def test_the_mouse_over_a_lane_reads_moves_and_zooms(qtbot: QtBot, charts: Joint
     lanes = charts.phases.lanes
     area = lanes.area(Side.LEFT)
     QTest.mouseMove(lanes, QPoint(int(area.center().x()), int(area.center().y())))
-    assert charts._cursor_s == pytest.approx(5.0, abs=0.02)
+    assert charts.cursor_s == pytest.approx(5.0, abs=0.02)
     wheel = QWheelEvent(
         QPointF(area.center()),
         QPointF(lanes.mapToGlobal(area.center().toPoint())),
@@ -176,10 +176,10 @@ def test_without_gait_there_are_no_lanes(charts: JointCharts) -> None:
     charts.show_recording("free motion", TIME_S, is_simulated=False)
     assert not charts.phases.isVisible()
     QTest.keyClick(charts, Qt.Key.Key_BracketRight)
-    assert charts._cursor_s is None
+    assert charts.cursor_s is None
 
 
 def test_simulated_is_on_the_lanes_too(charts: JointCharts) -> None:
-    assert not charts.phases._simulated.isVisible()
+    assert not charts.phases.simulated.isVisible()
     charts.show_recording("walk 1", TIME_S, True, {Side.LEFT: gait(1.0)})
-    assert charts.phases._simulated.isVisible()
+    assert charts.phases.simulated.isVisible()

@@ -233,7 +233,7 @@ def no_sensors() -> QWidget:
 def standing(phase: StandPhase, **more: object) -> Callable[[], QWidget]:
     def make() -> QWidget:
         page = StandStillPage()
-        page.show_zero({Joint.LEFT_KNEE: 12.0})
+        page.zero.show_zero({Joint.LEFT_KNEE: 12.0})
         page.show_state(StandStillView(phase, 1.2, movement_deg_s=dict.fromkeys(LEG_SITES, 0.4), **more))  # type: ignore[arg-type]  # of a test
         return page
 

@@ -13,17 +13,17 @@ from app.results.agreement_controller import AgreementController
 from app.results.agreement_page import AgreementPage
 from app.widgets.text import Text
 from app.workers.background import Background
-from core.analysis import analyse
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import SessionTruth, simulate
+from devices.simulation.walker import SessionTruth
 from tests.app.reports.agreement.agreement_material import SETTINGS, rows_of, write_reference
+from tests.simulated import analysis_of, simulation_of
 
 
 @pytest.fixture(scope="module")
 def walked() -> tuple[Session, Analysis, SessionTruth]:
-    simulated = simulate(SETTINGS)
-    return simulated.session, analyse(simulated.session), simulated.truth
+    simulated = simulation_of(SETTINGS)
+    return simulated.session, analysis_of(simulated.session), simulated.truth
 
 
 @pytest.fixture
@@ -120,7 +120,7 @@ def test_of_another_analysis_nothing_stays_in_sight(
     qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
     controller.show(session, analysis)
     assert page.sheets.count > 1
-    controller.show(session, analyse(session))
+    controller.show(session, analysis_of(session))
     assert page.sheets.count == 0
 
 

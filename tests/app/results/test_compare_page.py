@@ -17,7 +17,8 @@ from pytestqt.qtbot import QtBot
 from app.results.compare_page import CURVES, PLOT, TABLE
 from app.results.compared_table import comparison_table, side_table_row
 from app.results.compared_words import conclusion
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.summary.comparison import Comparison, Contrast, compare_sides, first_and_second
 from app.summary.conditions import Part, conditions_of
 from app.summary.differences import (
@@ -32,23 +33,22 @@ from app.summary.differences import (
 from app.summary.numbers_in_words import MARKS
 from app.summary.request import AnalysedVisit
 from app.summary.visits import ComparedVisits, WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
-from app.theme.current import load_fonts, set_dark
 from app.theme.icons import Icon
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD
 from app.widgets.trend_cell import TrendCell
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.analysis import analyse
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import ErrorSource, Judgement, Mark
 from core.verdicts.sigmas import ComparisonKind
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.room import settle, words_cut
+from tests.simulated import analysis_of, session_of
 
 DIGITS = 1e-5
 
@@ -58,7 +58,7 @@ def session() -> Session:
     """Three walks of two conditions; rigid sensors, so that no strap seems to slip."""
     walks = (Walk(strides=13), Walk("walk 2", strides=13), Walk("walk 3", strides=13, speed_m_s=0.9))
     played: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), *walks)
-    found = simulate(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played)).session
+    found = session_of(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played))
     conditions = {"walk 1": "barefoot", "walk 2": "barefoot", "walk 3": "AFO"}
     return replace(
         found, recordings=tuple(replace(one, condition=conditions.get(one.name, "")) for one in found.recordings)
@@ -67,7 +67,7 @@ def session() -> Session:
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 @pytest.fixture
@@ -77,8 +77,6 @@ def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1064, 672)

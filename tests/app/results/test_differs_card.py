@@ -14,26 +14,26 @@ from app.results.differs_card import HEAD, LEAST, MOST, ROW, DiffersCard
 from app.summary.facts import Facts
 from app.theme.current import current_theme
 from app.widgets.table_cells import IntervalStrip, MarkCell, TextCell
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
 from tests.app.reports.patient.test_what_stands_out import with_more
+from tests.simulated import analysis_of, session_of
 
 MINUS = "\N{MINUS SIGN}"
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return simulate(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13)))).session
+    return session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13))))
 
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 @pytest.fixture

@@ -27,14 +27,14 @@ from app.summary.diagnostics import (
 from app.theme.current import set_dark, set_scale
 from app.widgets.text import Text
 from app.workers.background import Background
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Site
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.session import Session
 from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.room import words_cut
+from tests.simulated import analysis_of, session_of
 
 KNEE = Joint.RIGHT_KNEE
 DIGITS = 1e-5
@@ -51,12 +51,12 @@ def session() -> Session:
     """The right knee of a patient, quickly simulated."""
     recordings = (Standing(), FreeMotion(duration_s=4.0), Walk(strides=3))
     sites = (Site.RIGHT_THIGH, Site.RIGHT_SHANK)
-    return simulate(WalkerSettings(seed=5, sites=sites, recordings=recordings)).session
+    return session_of(WalkerSettings(seed=5, sites=sites, recordings=recordings))
 
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 @pytest.fixture(scope="module")
@@ -238,5 +238,5 @@ def test_without_a_joint_the_page_states_so(
     controller.show(session, analysis, replace(analysis.recordings[-1], joints={}))
     assert page.waiting.isVisible()
     assert not page.save.isEnabled()
-    with qtbot.waitSignal(page.closed):
+    with qtbot.waitSignal(page.back.clicked):
         page.back.click()

@@ -16,13 +16,13 @@ from app.summary.visits import WalkedVisit, visits_by_condition
 from app.summary.what_differs import what_differs
 from app.widgets.table_cells import TextCell
 from app.widgets.trend_cell import TrendCell
-from core.analysis import analyse
 from core.body import Joint
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
 from tests.app.changed_analysis import recalibrated, walk_of
+from tests.simulated import analysis_of, session_of
 
 DAY = datetime.date(2026, 9, 30)
 GOALS = (
@@ -36,8 +36,8 @@ SPACE = "\N{NO-BREAK SPACE}"
 
 @pytest.fixture(scope="module")
 def visit() -> tuple[Session, Analysis]:
-    session = simulate(DEMONSTRATION).session
-    return session, analyse(session)
+    session = session_of(DEMONSTRATION)
+    return session, analysis_of(session)
 
 
 def on(day: str, visit: tuple[Session, Analysis]) -> Session:

@@ -10,8 +10,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
-from app.theme.current import load_fonts, set_dark
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.widgets.stride_list import HIP, KNEE
 from app.widgets.table import CellTable
 from core.body import Joint, Side, Site
@@ -49,8 +49,6 @@ def without_pelvis() -> Analysis:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)

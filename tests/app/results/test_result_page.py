@@ -13,22 +13,22 @@ from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
 from app.results.cycle_page import NO_SIDE, NO_SPEED
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
-from app.theme.current import load_fonts, set_dark
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, SideGait, ZeroKind
 from core.session import Session
 from core.verdicts.model import Verdict
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import raw_values
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.accessibility.accessible_tree import elements, wrong_hearing
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of, with_few_strides
 from tests.app.reports.patient.test_what_stands_out import with_more
+from tests.simulated import analysis_of, session_of
 
 GROWN = AgeAndHeight(30, 1.70)
 WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
@@ -37,12 +37,12 @@ WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and
 @cache
 def session() -> Session:
     recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
-    return simulate(replace(DEMONSTRATION, recordings=recordings)).session
+    return session_of(replace(DEMONSTRATION, recordings=recordings))
 
 
 @pytest.fixture(scope="module")
 def analysis() -> Analysis:
-    return analyse(session())
+    return analysis_of(session())
 
 
 def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> None:
@@ -51,8 +51,6 @@ def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> No
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)
@@ -125,7 +123,7 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
 def test_a_walk_without_strides_states_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
     show(page, changed(analysis, gait={}))
     assert page.view.choice == WHOLE
-    assert page.view._segments[ANSWER].accessibleName() == "Summary, no strides"
+    assert page.view.segments[0].accessibleName() == "Summary, no strides"
     show(page, analysis)
     assert page.view.choice == ANSWER
 

@@ -10,35 +10,33 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import ANSWER, STRIDES, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, STRIDES
 from app.summary.request import AnalysedVisit
-from app.theme.current import load_fonts, set_dark
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.room import words_cut
+from tests.simulated import analysis_of, session_of
 
 Turned = list[tuple[str, StrideLine, bool]]
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return simulate(replace(DEMONSTRATION, recordings=(Standing(), Walk(strides=8)))).session
+    return session_of(replace(DEMONSTRATION, recordings=(Standing(), Walk(strides=8))))
 
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)

@@ -11,24 +11,25 @@ from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import ANSWER, TABLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, TABLE
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
 from app.theme.current import px, set_scale
 from app.wording.translation import use_language
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
 from core.verdicts.norms import AgeAndHeight
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
 from tests.app.hip_visits import hip_visit
 from tests.app.reports.patient.test_what_stands_out import with_more
 from tests.app.room import settle, words_cut
+from tests.simulated import analysis_of, session_of
 
 # of the page in px of the design, and the size of everything
 ROOMS = {
@@ -44,12 +45,12 @@ DAYS = (datetime.date(2025, 7, 1), datetime.date(2025, 9, 23), datetime.date(202
 @cache
 def session() -> Session:
     walk = Walk(strides=13, speed_m_s=1.15)
-    return simulate(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), walk))).session
+    return session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), walk)))
 
 
 @cache
 def analysis() -> Analysis:
-    return analyse(session())
+    return analysis_of(session())
 
 
 def two_walks() -> tuple[AnalysedVisit, list[WalkedVisit]]:

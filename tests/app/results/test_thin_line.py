@@ -11,24 +11,24 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import STRIDES, ResultPage
+from app.results.result_page import ResultPage
 from app.results.thin_line import ThinLine
+from app.results.tools_row import STRIDES
 from app.summary.beside import beside_visit, beside_walk, changes_on_curves, walks_alone
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
-from app.theme.current import load_fonts, set_dark
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
 from core.verdicts.sigmas import ComparisonKind
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
 from tests.app.reports.patient.test_what_stands_out import with_more
 from tests.app.room import settle
+from tests.simulated import analysis_of, session_of
 
 JULY, SEPTEMBER, NOW = (datetime.date(2026, month, 1) for month in (7, 9, 11))
 VISITS = (JULY, SEPTEMBER, NOW)
@@ -39,7 +39,7 @@ def session() -> Session:
     """Two walks of one strapping, the second slower and with an orthosis."""
     walks = (Walk(strides=13), Walk("walk 2", strides=13, speed_m_s=0.8))
     played: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), *walks)
-    found = simulate(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played)).session
+    found = session_of(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played))
     return replace(with_conditions(found, walk_1="shoes", walk_2="AFO"), started=f"{NOW}T10:00:00+00:00")
 
 
@@ -51,13 +51,11 @@ def with_conditions(session: Session, **conditions: str) -> Session:
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.set_room(1064, 672)

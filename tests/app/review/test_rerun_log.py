@@ -24,14 +24,14 @@ from app.summary.request import AnalysedVisit
 from app.summary.walk_figures import verdict_of
 from app.theme.colours import DARK
 from app.wording.verdicts import verdict_word
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.phases import PHASES
 from core.results import Analysis, JointAngle, Method, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock
 from core.session import Patient, Recording, RecordingKind, Session
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, Verdicts, assess
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 
 def block(n: int, seed: int) -> ImuBlock:
@@ -254,14 +254,14 @@ def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
         write_log(*visit(), tmp_path / "missing" / "session.rrd")
 
 
-WALKED = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+WALKED = session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5))))
 
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
     """Log and tables of a simulated walk, in one folder."""
     folder = tmp_path_factory.mktemp("walk")
-    session, analysis = WALKED, analyse(WALKED)
+    session, analysis = WALKED, analysis_of(WALKED)
     write_log(session, analysis, folder / "session.rrd")
     write_gait(analysis.recordings[0], folder)
     return folder, analysis

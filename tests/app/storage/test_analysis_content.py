@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from app.storage.analysis_content import DIGEST, LENGTH, DamagedContentError, packed, unpacked
-from core.analysis import analyse
 from core.results import Analysis
-from devices.simulation.walker import DEMONSTRATION, Standing, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing
+from tests.simulated import analysis_of, session_of
 
 
 @pytest.fixture(scope="module")
 def analysis() -> Analysis:
-    return analyse(simulate(replace(DEMONSTRATION, recordings=(Standing(),))).session)
+    return analysis_of(session_of(replace(DEMONSTRATION, recordings=(Standing(),))))
 
 
 def sealed(outline: object, arrays: bytes = b"") -> bytes:

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.safety.concurrent_edits import EditsJudged, judge, open_station, prepare, run
+from tests.driver import Found
+from tests.safety.concurrent_edits import judge, open_station, prepare, run
 
 ROOT = Path(__file__).parents[3]
 
@@ -22,11 +23,11 @@ def test_no_acknowledged_edit_of_two_stations_is_lost(
     url = str(tmp_path) if kind == "file" else str(request.getfixturevalue("postgres_url"))
     verdict = run(url, edits=250)
     assert verdict.faults == []
-    assert verdict.acknowledged > 500
-    assert min(verdict.contested, verdict.merged) > 5  # how often they meet is chance
+    assert verdict.count["values acknowledged"] > 500
+    assert min(verdict.count["contested"], verdict.count["merged of the other's"]) > 5  # how often they meet is chance
 
 
-def judged(folder: Path, is_old: bool, stated: str = "knee B") -> EditsJudged:
+def judged(folder: Path, is_old: bool, stated: str = "knee B") -> Found:
     """What is found where one station writes over another's word; `is_old`: reported that it was shown what was
     before."""
     things = prepare(str(folder))

@@ -8,7 +8,8 @@ from sqlalchemy import text
 from app.storage.database.engine import Database
 from app.storage.database.ids import uuid7
 from app.storage.database.models import CourseRow
-from app.storage.database.schema import bring_up_to_date, move
+from app.storage.database.schema import bring_up_to_date
+from app.storage.database.steps import move
 from app.storage.kept_courses import keep_course
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator, Role

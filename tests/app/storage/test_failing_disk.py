@@ -2,7 +2,7 @@
 
 import errno
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
@@ -16,16 +16,16 @@ from app.storage.journal.decoding import decode
 from app.storage.journal.disk import Trouble
 from app.storage.journal.header import find_segments
 from app.storage.journal.writer import JournalWriter, State
-from app.storage.keys import KeySlots
-from app.storage.layout import IN_USE, KEYS
-from app.storage.library import Library
+from app.storage.layout import IN_USE
 from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.recovery import find_interrupted, recover
-from app.storage.slots import Cost
-from app.storage.stored import LibraryError, Operator, Role, StoredJournal
+from app.storage.stored import LibraryError, StoredJournal
+from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.quick_library import quick_library
 from tests.safety.failing_disk import FailingDisk, failing_disk, missing
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line, record_some
+from tests.waiting import wait_for
 
 pytestmark = [
     pytest.mark.endurance,
@@ -33,7 +33,6 @@ pytestmark = [
 ]
 
 REFUSED = pytest.mark.parametrize("number", [errno.EIO, errno.EROFS], ids=["EIO", "EROFS"])
-PATIENCE_S = 30.0
 MOST_WRITES = 3000  # by far more than a save or a backup needs
 SENTENCES = {
     "The library file cannot be read or written. Check the disk, then try again.",
@@ -50,12 +49,10 @@ def disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FailingDis
 
 def made(folder: Path) -> OpenedLibrary:
     """A library with a visit."""
-    folder.mkdir()
-    key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
-    library = Library.create(folder, key, Operator("hk", "", Role.ADMINISTRATOR))
-    patient = library.patients.create(Patient(code="P-1"))
-    library.sessions.create(patient.id, Session((), started="2026-11-20T09:00:00", notes="before"))
-    return OpenedLibrary(library, folder, key)
+    opened = quick_library(folder)
+    patient = opened.library.patients.create(Patient(code="P-1"))
+    opened.library.sessions.create(patient.id, Session((), started="2026-11-20T09:00:00", notes="before"))
+    return opened
 
 
 @pytest.fixture
@@ -78,17 +75,6 @@ def again(opened: OpenedLibrary) -> OpenedLibrary:
     assert found.library.faults() == ()
     assert found.library.audit.verify().faults == ()
     return found
-
-
-def wait_for(is_so: Callable[[], bool]) -> None:
-    give_up_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.005)
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 @REFUSED
@@ -125,7 +111,7 @@ def test_a_recording_keeps_what_was_written_and_states_what_happened(
         bring_home(later)
         (found,) = find_interrupted(later)
         assert found.problem == ""
-        recover(later, found, silent)
+        recover(later, found, nobody)
         paths = list(find_segments(later.recordings)[recording_id].values())
         block = decode(paths, later.data_key, {"lines": LineDecoder}).sensors["line"].block
     numbers = [round(float(one)) for one in block.time_s * 200.0]

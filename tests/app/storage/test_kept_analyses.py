@@ -16,14 +16,14 @@ from app.storage.library import DEMONSTRATOR, Library
 from app.storage.results import key_of
 from app.storage.stored import ResultKind
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.session import Patient, Recording, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
+from tests.simulated import analysis_of, session_of
 
 SHANK = Site.LEFT_SHANK
 
@@ -33,7 +33,7 @@ def session() -> Session:
     """A walk of one leg: short, for every bit of it is compared."""
     sites = (Site.LEFT_THIGH, SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    simulated = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    simulated = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     return replace(
         simulated,
         patient=Patient(code="DEMO-1", affected_side="left"),
@@ -45,7 +45,7 @@ def session() -> Session:
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(bare(session))
+    return analysis_of(bare(session))
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_what_is_kept_is_what_would_be_computed_to_the_last_bit(
     keep_analysis(library.results, visit_id, session, analysis)
     kept = find_analysis(library.results, visit_id, session)
     assert kept is not None
-    assert packed(kept) == packed(analyse(session))
+    assert packed(kept) == packed(analysis_of(session))
     knee, again = (a.recordings[0].joints[Joint.LEFT_KNEE].angle_rad for a in (analysis, kept))
     assert knee.tobytes() == again.tobytes()
     assert kept.findings == analysis.findings

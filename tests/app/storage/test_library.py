@@ -295,7 +295,7 @@ def test_a_result_is_kept_though_the_clock_was_set_back(library: Library, monkey
 
 
 def test_the_database_is_loaded_when_a_library_is_opened_and_not_before() -> None:
-    look = "import sys, app.cli.main, app.storage.library, app.storage.stored; print('sqlalchemy' in sys.modules)"
+    look = "import sys, app.cli.main, app.main_window, app.storage.stored; print('sqlalchemy' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", look], capture_output=True, text=True, check=True)
     assert run.stdout == "False\n"
 

@@ -481,25 +481,15 @@ def test_a_deleted_session_is_destroyed_by_itself(library: Library, walk: Stored
     assert len(library.patients.search()) == 1
 
 
-def test_everything_of_one_patient_is_everything_and_of_nobody_else(
+def test_the_history_of_one_patient_is_of_nobody_else(
     library: Library, patient: StoredPatient, walk: StoredRecording
 ) -> None:
     stranger = library.patients.create(Patient(code="Q-2"))
     library.patients.change(stranger, Patient(code="Q-3"))
-    other = library.sessions.create(stranger.id, Session((), notes="not mine"))
     library.patients.change(library.patients.get(patient.id), replace(FULL, aids="frame"))
     library.recordings.change(walk, replace(WALK, is_kept=False))
-    inputs = AnalysisInputs((), {}, {}, {}, "1", {})
-    kept = library.results.keep(walk.session_id, ResultKind.ANALYSIS, inputs, "json", b"{}")
-    library.results.keep(other.id, ResultKind.ANALYSIS, inputs, "json", b"{}")
-    found = library.patients.everything(patient.id)
-    assert found.patient == library.patients.get(patient.id)
-    assert found.sessions == (library.sessions.get(walk.session_id),)
-    assert [correction.changes[0].field for correction in found.corrections] == ["is_kept", "aids"]
-    assert found.results == (kept,)
-    assert {entry.action for entry in found.audit} == {"create", "edit", "export"}
-    for wrong in ("Q-2", "Q-3", "not mine", str(stranger.id), str(other.id)):
-        assert wrong not in str(found)
+    found = library.corrections.of_patient(patient.id)
+    assert [correction.changes[0].field for correction in found] == ["is_kept", "aids"]
 
 
 def test_looking_at_a_session_is_noted(library: Library, visit: StoredSession) -> None:

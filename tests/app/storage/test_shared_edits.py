@@ -7,6 +7,7 @@ from uuid import UUID
 
 import pytest
 
+from app.storage.audit import about
 from app.storage.database.engine import Database
 from app.storage.edited_fields import KEPT, PLACEMENT, patient_fields, recording_fields, session_fields
 from app.storage.library import Library
@@ -109,7 +110,7 @@ def test_the_same_field_is_contested_and_both_are_in_history_and_audit(stations:
     assert chosen.contests == ()
     assert chosen.stored.details.height_m == 1.82
     assert history(stations)[-1] == ("hk", "height_m", 1.80, 1.82, False)
-    entries = stations.ours.patients.everything(stations.patient_id).audit
+    entries = stations.ours.audit.entries(about("patient", stations.patient_id))
     noted = [entry.operator for entry in entries if "correction" in entry.details]
     assert noted == ["bb", "hk", "hk", "hk", "hk"]
     assert stations.ours.audit.verify(BEGINNING).faults == ()

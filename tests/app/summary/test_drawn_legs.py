@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 
 from app.summary.drawn_legs import FOOT, HIPS, SHANK, THIGH, UNKNOWN_HEIGHT_M, draw_legs
-from core.analysis import analyse
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind, Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 HEIGHT_M = 1.8
 
 
 @pytest.fixture(scope="module")
 def visit() -> tuple[Session, Analysis]:
-    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), FreeMotion(), Walk(strides=5)))).session
+    session = session_of(WalkerSettings(seed=4, recordings=(Standing(), FreeMotion(), Walk(strides=5))))
     session = replace(session, patient=replace(session.patient, height_m=HEIGHT_M))
-    return session, analyse(session)
+    return session, analysis_of(session)
 
 
 def walk_of(analysis: Analysis) -> RecordingAnalysis:

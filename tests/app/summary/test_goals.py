@@ -30,7 +30,6 @@ from app.summary.goals import (
     value_in_words,
 )
 from app.wording.measures import goal_in_words, required, spoken_value
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.goals import NO_GOALS, Goal, GoalOf, agreed_by
 from core.results import RecordingAnalysis
@@ -38,9 +37,10 @@ from core.session import Patient, Session
 from core.timed.protocols import TimedProtocol
 from core.verdicts.goals import GoalStanding
 from core.verdicts.model import Verdict
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
 from tests.app.course_material import analysis, course, recordings, timed, unsure, walked
 from tests.core.verdicts.built_walk import judged_walk
+from tests.simulated import analysis_of, session_of
 
 KNEE, SPEED, STANCE = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent"
 DAY = datetime.date(2026, 9, 30)
@@ -208,14 +208,14 @@ def test_a_not_reported_value_is_an_empty_cell() -> None:
 
 @pytest.fixture(scope="module")
 def agreed() -> Session:
-    session = simulate(DEMONSTRATION).session
+    session = session_of(DEMONSTRATION)
     goals = (knee(45.0), Goal(SPEED, GoalOf.WALK, 3.0, DAY, "H. Keller", until=NEXT, note="for the ferry"))
     patient = replace(session.patient, goals=goals)
     return replace(session, patient=patient, started="2026-11-21T10:00:00+01:00")
 
 
 def test_folder_and_summary_show_the_same_and_who_agreed_stays_away(agreed: Session, tmp_path: Path) -> None:
-    write_results(agreed, analyse(agreed), tmp_path)
+    write_results(agreed, analysis_of(agreed), tmp_path)
     with (tmp_path / GOALS).open(encoding="utf-8", newline="") as file:
         table = list(csv.DictReader(file))
     reported = json.loads((tmp_path / "summary.json").read_text())["walks"]["walk 1"]["goals"]
@@ -226,13 +226,13 @@ def test_folder_and_summary_show_the_same_and_who_agreed_stays_away(agreed: Sess
     assert "ferry" not in whole
     without = replace(agreed, patient=Patient())
     (tmp_path / "without").mkdir()
-    write_results(without, analyse(without), tmp_path / "without")
+    write_results(without, analysis_of(without), tmp_path / "without")
     assert not (tmp_path / "without" / GOALS).exists()
     assert "goals" not in json.loads((tmp_path / "without" / "summary.json").read_text())["walks"]["walk 1"]
 
 
 def test_a_bundle_holds_what_had_been_agreed_and_does_not_say_whether_it_is_reached(agreed: Session) -> None:
-    found = [one["resource"] for one in bundle(agreed, analyse(agreed))["entry"]]
+    found = [one["resource"] for one in bundle(agreed, analysis_of(agreed))["entry"]]
     first, second = (one for one in found if one["resourceType"] == "Goal")
     assert first["target"][0]["detailQuantity"] == {
         "value": 45.0,
@@ -246,7 +246,7 @@ def test_a_bundle_holds_what_had_been_agreed_and_does_not_say_whether_it_is_reac
     assert second["note"] == [{"text": "for the ferry"}]
     assert "achievementStatus" not in first
     before = replace(agreed, started="2026-09-01T10:00:00+02:00")
-    assert not any(one["resource"]["resourceType"] == "Goal" for one in bundle(before, analyse(before))["entry"])
+    assert not any(one["resource"]["resourceType"] == "Goal" for one in bundle(before, analysis_of(before))["entry"])
 
 
 def test_the_day_of_a_session_decides(agreed: Session) -> None:

@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 from app.summary.mean_legs import ANKLE, HIP, KNEE, TOES, MeanLegs, mean_legs
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of
+from tests.simulated import analysis_of, session_of
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return simulate(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13)))).session
+    return session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13))))
 
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 def legs_of(session: Session, analysis: Analysis) -> MeanLegs:

@@ -11,13 +11,13 @@ import pytest
 from app.summary.comparison import Compared, Comparison, Contrast
 from app.summary.visit_trend import Trend, trend_of
 from app.summary.visits import WalkedVisit, visits_by_condition
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated, with_few_strides
+from tests.simulated import analysis_of, session_of
 
 DAYS = (datetime.date(2026, 5, 1), datetime.date(2026, 5, 11), datetime.date(2026, 6, 10))
 
@@ -25,12 +25,12 @@ DAYS = (datetime.date(2026, 5, 1), datetime.date(2026, 5, 11), datetime.date(202
 @pytest.fixture(scope="module")
 def session() -> Session:
     recordings = (Standing(), FreeMotion(), Walk(strides=13))
-    return simulate(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=recordings)).session
+    return session_of(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=recordings))
 
 
 @pytest.fixture(scope="module")
 def analysis(session: Session) -> Analysis:
-    return analyse(session)
+    return analysis_of(session)
 
 
 def compared(session: Session, analyses: Sequence[Analysis], *, has_days: bool = True) -> Comparison:

@@ -30,7 +30,6 @@ from app.summary.walk_figures import (
     strides_in_words,
     time_distance_figures,
 )
-from core.analysis import analyse
 from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out
 from core.gait.strides import Reason
@@ -38,14 +37,15 @@ from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.session import Recording
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import both_sides
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides, with_used
+from tests.simulated import analysis_of, session_of
 
 
 @pytest.fixture(scope="module")
 def analysis() -> Analysis:
     recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
-    return analyse(simulate(replace(DEMONSTRATION, recordings=recordings)).session)
+    return analysis_of(session_of(replace(DEMONSTRATION, recordings=recordings)))
 
 
 @pytest.fixture

@@ -180,7 +180,7 @@ def test_the_program_itself_ends_without_a_traceback_and_without_a_core_dump(tmp
     ends = """
 import sys
 from app.cli import main as cli
-cli._parser = lambda: 1 / 0
+cli.parser = lambda: 1 / 0
 sys.argv = ["gaitwright", "analyse", "Anna"]
 cli.main()
 """

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.help.help_reader import HelpReader
+from app.plots.joint_charts import JointCharts
 from app.theme.current import set_scale
 from app.theme.icons import Icon
 from app.wizard.free_motion.page import FreeMotionPage
@@ -33,6 +34,7 @@ PARTS: tuple[Make, ...] = (
     lambda: LiveStrip((-20.0, 80.0), 20),
     ColumnsForm,
     FreeMotionPage,
+    JointCharts,
     a_topic,
     LabelChooser,
     LastVisitCard,

@@ -12,7 +12,6 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme.colours import LIGHT
-from app.theme.current import load_fonts
 from app.theme.icons import Icon
 from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote
 from tests.app.idle_action import idle
@@ -27,7 +26,6 @@ def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
 
 @pytest.fixture
 def bar(qtbot: QtBot) -> ActionBar:
-    load_fonts()
     bar = ActionBar()
     qtbot.addWidget(bar)
     bar.resize(1064, 72)

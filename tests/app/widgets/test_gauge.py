@@ -10,7 +10,6 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import load_fonts
 from app.widgets import gauge as gauge_module
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
 from app.wording.translation import use_language
@@ -193,7 +192,6 @@ class Recorder(QPainter):
 def test_no_words_of_a_card_lie_on_others_however_low_it_is(
     qtbot: QtBot, monkeypatch: pytest.MonkeyPatch, language: str, joint: Joint
 ) -> None:
-    load_fonts()
     monkeypatch.setattr(gauge_module, "QPainter", Recorder)
     use_language(language)
     gauge = Gauge(joint)
@@ -221,7 +219,6 @@ def test_no_words_of_a_card_lie_on_others_however_low_it_is(
 def test_words_never_enter_the_ring(
     qtbot: QtBot, monkeypatch: pytest.MonkeyPatch, joint: Joint, size: tuple[int, int]
 ) -> None:
-    load_fonts()
     monkeypatch.setattr(gauge_module, "QPainter", Recorder)
     gauge = Gauge(joint)
     qtbot.addWidget(gauge)

@@ -7,7 +7,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import load_fonts
 from app.widgets.key_groups import COLUMNS, KeyGroups
 
 GROUPS = ["7ATX", "CTM1", "NEMQ", "0PG8", "MMPN", "YTHB", "DZ7F", "Z1CR", "X"]
@@ -15,7 +14,6 @@ GROUPS = ["7ATX", "CTM1", "NEMQ", "0PG8", "MMPN", "YTHB", "DZ7F", "Z1CR", "X"]
 
 @pytest.fixture
 def key(qtbot: QtBot) -> KeyGroups:
-    load_fonts()
     key = KeyGroups()
     qtbot.addWidget(key)
     key.show_groups(GROUPS)

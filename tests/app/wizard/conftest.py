@@ -17,7 +17,6 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
@@ -27,9 +26,10 @@ from core.body import LEG_SITES, Site
 from core.session import Patient, Session
 from devices.emulators.dot_faults import DotFaults
 from devices.simulation.replay import ReplaySource
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.wizard.dressed_patient import Worn, dressed_patient
 from tests.devices.dot.fast_radio import FastRadio
+from tests.simulated import session_of
 
 PASSPHRASE = "four short words here"
 SPEED = 20.0
@@ -38,7 +38,7 @@ SPEED = 20.0
 @pytest.fixture(scope="session")
 def simulated_session() -> Session:
     played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
-    return simulate(replace(DEMONSTRATION, recordings=played)).session
+    return session_of(replace(DEMONSTRATION, recordings=played))
 
 
 @pytest.fixture(scope="session")
@@ -58,7 +58,7 @@ def controller(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterato
     controller = LibraryController()
     folder = shutil.copytree(untouched_library, tmp_path / "library")
     with qtbot.waitSignal(controller.opened, timeout=20_000):
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     yield controller
     controller.finish()
 
@@ -92,7 +92,6 @@ def visit(controller: LibraryController, choice: SourceChoice) -> Iterator[Visit
 
 @pytest.fixture
 def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path) -> Iterator[Wizard]:
-    load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     wizard = Wizard(controller, settings)
     qtbot.addWidget(wizard)

@@ -6,14 +6,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Site
 from core.calibration.rest import Rest, rest_of
 from core.live.sensors import LiveSensor
 from core.results import JointCalibration
 from core.samples import ImuBlock
 from core.session import Recording
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.core.cut_blocks import part_of
+from tests.simulated import analysis_of, session_of
 
 Blocks = Mapping[str, ImuBlock]
 
@@ -43,7 +44,7 @@ def dressed_patient() -> Worn:
         FreeMotion(duration_s=11.0, is_in_turn=True),
         Walk(strides=14, standing_after_s=3.0),
     )
-    session = simulate(WalkerSettings(seed=3, tissue=Tissue.SOFT, recordings=recordings)).session
+    session = session_of(WalkerSettings(seed=3, tissue=Tissue.SOFT, recordings=recordings))
     site_of = {f"0A{number:02d}": site for number, site in enumerate((*LEG_SITES[3:], *LEG_SITES[:3]))}
     standing, free_motion, walk = (_by_name(recording, site_of) for recording in session.recordings)
     rests = {name: rest for name, block in standing.items() if (rest := rest_of(block)) is not None}
@@ -55,7 +56,7 @@ def dressed_patient() -> Worn:
         standing=standing,
         free_motion=free_motion,
         walk=walk,
-        calibration=analyse(session).calibrations[-1].joints,
+        calibration=analysis_of(session).calibrations[-1].joints,
     )
 
 
@@ -64,13 +65,8 @@ def in_blocks(streams: Blocks, block_s: float) -> Iterator[dict[str, ImuBlock]]:
     first_s = min(float(block.time_s[0]) for block in streams.values())
     last_s = max(float(block.time_s[-1]) for block in streams.values())
     for from_s, to_s in pairwise(np.arange(first_s, last_s + 2 * block_s, block_s).tolist()):
-        parts = {name: between(block, from_s, to_s) for name, block in streams.items()}
+        parts = {name: part_of(block, from_s, to_s) for name, block in streams.items()}
         yield {name: part for name, part in parts.items() if len(part)}
-
-
-def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist())
-    return ImuBlock(block.sensor, block.time_s[part], block.gyr_rad_s[part], block.acc_m_s2[part])
 
 
 def without(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:

@@ -20,7 +20,6 @@ from pytestqt.qtbot import QtBot
 from app.home.home import Home
 from app.storage.stored import PlacedSensor, RecordingState
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.report.step import ReportStep
@@ -71,7 +70,6 @@ def start_again(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Callable[[str], tuple[Home, Wizard]]]:
     """Open the library as the next start does, and then the session that was killed."""
-    load_fonts()
     monkeypatch.setattr(wizard_module, "choices", tuple)
     made: list[Wizard] = []
 
@@ -84,7 +82,7 @@ def start_again(
             widget.resize(1280, 800)
         home.show()
         with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-            controller.open(tmp_path / "library", PASSPHRASE)
+            controller.open(lambda holder: holder.open(tmp_path / "library", PASSPHRASE))
         assert controller.state is not None
         home.show_library(controller.state)
         if controller.state.interrupted:

@@ -12,7 +12,6 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.stored import RecordingState
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
@@ -41,7 +40,6 @@ def left(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.
 def wizard(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Wizard]:
-    load_fonts()
     monkeypatch.setattr(wizard_module, "choices", tuple)
     wizard = Wizard(controller, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(wizard)

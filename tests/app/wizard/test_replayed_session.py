@@ -11,13 +11,13 @@ from pytestqt.qtbot import QtBot
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.step import StepId
 from app.wizard.wizard import Wizard
-from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
 from devices.files.xsens_mtmanager import mtmanager_trial
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
+from tests.simulated import analysis_of, session_of
 from tests.trials_of_files import import_with
 
 pytestmark = pytest.mark.endurance  # as long as the patients take, a minute or two each
@@ -73,7 +73,7 @@ def range_deg(analysis: Analysis, joint: Joint) -> float:
 
 def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, wizard: Wizard, tmp_path: Path) -> None:
     folder = tmp_path / "session"
-    write_session(simulate(DEMONSTRATION).session, folder)
+    write_session(session_of(DEMONSTRATION), folder)
     lead_to_standing(qtbot, wizard, folder)
     wizard.press_primary()
     qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION, timeout=WAIT_MS)
@@ -82,7 +82,7 @@ def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, w
         wizard.press_primary()
     qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
     record_walk(qtbot, wizard, 20.0)
-    analysis, stored = results(qtbot, wizard), analyse(read_session(folder))
+    analysis, stored = results(qtbot, wizard), analysis_of(read_session(folder))
     visit = wizard.visit
     assert visit is not None
     assert min(visit.evaluation.strides("walk 1").values()) >= 8

@@ -27,11 +27,12 @@ from core.session import RecordingKind, Session
 from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.simulation.replay import ReplaySource
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk
 from tests.app.storage.library.folder_export import write_folder
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
 from tests.app.wizard.pressing import press
+from tests.simulated import session_of
 
 HIPS = {hip_of(side) for side in Side}
 LIVE_SPEED = 4.0
@@ -46,7 +47,7 @@ def simulated_session() -> Session:
         FreeMotion("legs", duration_s=14.0, is_in_turn=True),
         Walk(strides=24, turn_rad=np.pi),
     )
-    return simulate(replace(DEMONSTRATION, sites=tuple(Site), recordings=played)).session
+    return session_of(replace(DEMONSTRATION, sites=tuple(Site), recordings=played))
 
 
 @pytest.fixture

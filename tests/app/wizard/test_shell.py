@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import load_fonts, px, set_scale
+from app.theme.current import px, set_scale
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
@@ -93,8 +93,7 @@ def filled() -> WizardShell:
 
 
 @pytest.fixture(autouse=True)
-def _fonts(qapp: object) -> Iterator[None]:
-    load_fonts()
+def _english_again() -> Iterator[None]:
     yield
     use_language("en")
 
@@ -159,7 +158,7 @@ def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell) -> 
 def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell) -> None:
     page = FreeMotionPage()
     shell.show_page(StepId.PATIENT, page)
-    page.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
+    page.question.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
     settle()
     assert page.question.isVisible()
     assert page.height() <= shell._scroll.viewport().height()

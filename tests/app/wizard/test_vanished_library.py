@@ -17,7 +17,6 @@ from app.editing.session_recording import SessionRecording
 from app.main_window import MainWindow
 from app.storage.stored import RecordingState
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.wizard import wizard as wizard_module
 from app.wizard.step import StepId
 from app.wizard.visit import Visit
@@ -145,7 +144,6 @@ def open_window(
     choice = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
     monkeypatch.setattr(wizard_module, "choices", lambda: (choice,))
     shutil.copytree(untouched_library, tmp_path / "library")
-    load_fonts()
 
     def end(window: MainWindow) -> None:
         window.close()

@@ -17,11 +17,11 @@ from app.wizard.patient.step import PatientStep
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.session import Patient, RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
+from tests.simulated import analysis_of
 
 
 def test_whole_session_is_evaluated_and_stored(
@@ -57,7 +57,7 @@ def test_whole_session_is_evaluated_and_stored(
         for joint in before.joints:
             np.testing.assert_array_equal(before.joints[joint].angle_rad, after.joints[joint].angle_rad)
     assert again.evaluation.session is not None
-    assert analyse(again.evaluation.session).findings == other.findings
+    assert analysis_of(again.evaluation.session).findings == other.findings
     again.finish()
 
 

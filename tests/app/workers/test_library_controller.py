@@ -14,7 +14,6 @@ from types import CellType
 from typing import cast
 
 import pytest
-from PySide6.QtCore import QObject
 from pytestqt.qtbot import QtBot
 
 from app.storage.data_key import LibraryLockedError
@@ -28,13 +27,14 @@ from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.system.progress import Report
 from app.workers.library_controller import LibraryController
-from app.workers.library_state import Joined, LibraryPlace, OpenedState
+from app.workers.library_holder import LibraryHolder
+from app.workers.library_state import Joined, LibraryPlace, OpenedState, Unlocked
 from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
 from core.session import Patient
+from tests.app.library_answers import WAIT_MS, Asker, asked, not_opened_by, opened, opened_by, opening
 
 PASSPHRASE = "four short words here"
-WAIT_MS = 20_000  # on a busy machine
 
 
 @pytest.fixture(scope="session")
@@ -73,13 +73,17 @@ def test_the_passphrase_is_not_held_by_a_library_that_is_open(
 
     for passphrase, signal in (("words of somebody else", controller.not_opened), (own, controller.opened)):
         with qtbot.waitSignal(signal, timeout=WAIT_MS):
-            controller.open(folder, passphrase, "hk")
+            controller.open(opening(folder, passphrase, "hk"))
         let_go_of(passphrase)
     asker = Asker()
     controller.lock()
-    controller.unlock("hk", own, None, asker.on_done, asker.on_failed, asker)
+    controller.call(unlocking(own), *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     let_go_of(own)
+
+
+def unlocking(passphrase: str) -> Callable[[LibraryHolder], Unlocked]:
+    return lambda holder: holder.unlock("hk", passphrase, None)
 
 
 def is_held(text: str) -> bool:
@@ -93,40 +97,10 @@ def is_held(text: str) -> bool:
     return False
 
 
-class Asker(QObject):
-    """Notes what it is reported, and where."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.results: list[object] = []
-        self.refusals: list[tuple[str, str]] = []
-        self.shares: list[float] = []
-        self.threads = {main_thread()}
-
-    def on_done(self, result: object) -> None:
-        self.threads.add(current_thread())
-        self.results.append(result)
-
-    def on_failed(self, what: str, remedy: str) -> None:
-        self.threads.add(current_thread())
-        self.refusals.append((what, remedy))
-
-    def on_progressed(self, share: float, _what: str) -> None:
-        self.shares.append(share)
-
-
-def opened(qtbot: QtBot, controller: LibraryController, folder: Path, code: str = "hk") -> OpenedState:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(folder, PASSPHRASE, code)
-    (state,) = reported.args or []
-    assert isinstance(state, OpenedState)
-    return state
-
-
 def test_calls_are_answered_in_order_on_the_screens_thread(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
     worked_in = []
 
@@ -138,7 +112,7 @@ def test_calls_are_answered_in_order_on_the_screens_thread(
         return add
 
     for code in ("P-1", "P-2", "P-3"):
-        controller.run(adding(code), asker.on_done, asker.on_failed, asker)
+        controller.run(adding(code), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.results) == 3, timeout=WAIT_MS)
     assert asker.results == ["P-1", "P-2", "P-3"]
     assert asker.threads == {main_thread()}
@@ -150,9 +124,9 @@ def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, slow = Asker(), Event()
-    controller.record(lambda _library, _turn: "too early", asker.on_done, asker.on_failed, asker)
+    controller.record(lambda _library, _turn: "too early", *asker.ears)
     assert asker.refusals == [("No library is open.", "Log in, then try again.")]
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     controller.run(lambda _library: slow.wait(60), None, None, asker)
     turns: list[bool] = []
 
@@ -164,10 +138,10 @@ def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
         turn.result()
         return len(library.library.patients.search())  # it is still open
 
-    controller.record(begin, asker.on_done, asker.on_failed, asker)
+    controller.record(begin, *asker.ears)
     qtbot.waitUntil(lambda: asker.results == ["begun"], timeout=WAIT_MS)
     assert turns == [False]
-    controller.record(end, asker.on_done, asker.on_failed, asker)
+    controller.record(end, *asker.ears)
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
         slow.set()
@@ -176,12 +150,10 @@ def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
 
 
 def test_a_refusal_is_reported_in_two_sentences(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
     for _ in range(2):
-        controller.run(
-            lambda library: library.library.patients.create(Patient(code="P-1")), asker.on_done, asker.on_failed, asker
-        )
+        controller.run(lambda library: library.library.patients.create(Patient(code="P-1")), *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [
         ("Another patient has this code.", "Open the other patient, or choose another code."),
@@ -208,7 +180,7 @@ def test_what_the_library_refuses_is_reported_in_the_users_language(tmp_path: Pa
 def test_what_nobody_foresaw_is_logged_and_reported_plainly(
     qtbot: QtBot, controller: LibraryController, folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
 
     def call(_library: OpenedLibrary) -> None:
         raise ZeroDivisionError("P-0147")
@@ -221,14 +193,14 @@ def test_what_nobody_foresaw_is_logged_and_reported_plainly(
 
 
 def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     go_on, asker = Event(), Asker()
     received = asker.results
-    controller.run(lambda _library: go_on.wait(5), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda _library: go_on.wait(5), *asker.ears)
     del asker
     go_on.set()
     last = Asker()
-    controller.run(lambda _library: "after it", last.on_done, last.on_failed, last)
+    controller.run(lambda _library: "after it", *last.ears)
     qtbot.waitUntil(lambda: bool(last.results), timeout=WAIT_MS)
     assert received == []
 
@@ -237,12 +209,12 @@ def test_calls_before_opening_and_after_closing_are_refused(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.patients.search(), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.refusals) == 1, timeout=WAIT_MS)
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
-    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.patients.search(), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.refusals) == 2, timeout=WAIT_MS)
     assert asker.results == []
     assert controller.state is None
@@ -256,13 +228,13 @@ def test_of_an_opening_that_another_or_a_closing_followed_nothing_is_reported(
     controller.opened.connect(reported.append)
     controller.not_opened.connect(lambda *words: reported.append(words))
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
-        controller.open(folder, passphrase, "hk")
+        controller.open(opening(folder, passphrase, "hk"))
         controller.close()
     assert reported == []
     state = controller.state
     assert state is None
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(folder, passphrase, "hk")
+        controller.open(opening(folder, passphrase, "hk"))
         controller.open_demonstration()
     assert [type(one) for one in reported] == [OpenedState]
     state = controller.state
@@ -274,39 +246,36 @@ def test_a_wrong_passphrase_is_reported_apart_from_other_trouble(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     for place, is_key in ((folder, True), (tmp_path / "nothing", False)):
-        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-            controller.open(place, "not this one", "hk")
-        assert reported.args is not None
-        assert reported.args[2] is is_key
-        assert all(sentence.endswith(".") for sentence in reported.args[:2])
+        what, remedy, is_of_key = not_opened_by(qtbot, controller, opening(place, "not this one", "hk"))
+        assert is_of_key is is_key
+        assert what.endswith(".")
+        assert remedy.endswith(".")
 
 
 @pytest.mark.endurance
 def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
     qtbot: QtBot, controller: LibraryController, tmp_path: Path
 ) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE)
-    (state,) = reported.args or []
+    state = opened_by(qtbot, controller, lambda holder: holder.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE))
     assert state.operator.role is Role.ADMINISTRATOR
-    assert state.recovery_key
-    assert state.recovery_key not in repr(state)
+    key = state.recovery_key
+    assert key
+    assert key not in repr(state)
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
-    (state,) = reported.args or []
+    state = opened_by(
+        qtbot, controller, lambda holder: holder.open_recovered(tmp_path / "new", key, "hk", "another four words")
+    )
     assert state.recovery_key == ""
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(tmp_path / "new", "another four words")
+    opened_by(qtbot, controller, lambda holder: holder.open(tmp_path / "new", "another four words"))
 
 
 def test_the_folder_states_who_may_open_it(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     asker = Asker()
-    for place in (folder, tmp_path / "nothing"):
-        controller.look(place, asker.on_done, asker.on_failed, asker)
+    controller.call(lambda holder: holder.look(folder), *asker.ears)
+    controller.call(lambda holder: holder.look(tmp_path / "nothing"), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     there, nothing = asker.results
     assert isinstance(there, LibraryPlace)
@@ -318,20 +287,17 @@ def test_the_folder_states_who_may_open_it(
 def test_a_keyring_without_the_key_sends_back_to_the_passphrase(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-        controller.open_remembered(folder, "hk")
-    assert reported.args is not None
-    assert reported.args[1] == "Enter the passphrase."
+    _, remedy, _ = not_opened_by(qtbot, controller, lambda holder: holder.open_remembered(folder, "hk"))
+    assert remedy == "Enter the passphrase."
 
 
 def test_a_library_that_another_program_holds_is_not_opened(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-        controller.open(folder, PASSPHRASE, "hk")
-    assert reported.args is not None
-    assert "This library is already open in Gaitwright" in reported.args[0]
-    opened(qtbot, controller, folder)
+    with held_alone(folder):
+        what, _, _ = not_opened_by(qtbot, controller, opening(folder, PASSPHRASE, "hk"))
+    assert "This library is already open in Gaitwright" in what
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
 
 
 def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
@@ -346,9 +312,9 @@ def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
                 library.patients.delete(library.patients.create(Patient(code="P-9")))
     asker = Asker()
     for code, left in (("vi", 1), ("hk", 0)):
-        opened(qtbot, controller, folder, code)
+        opened(qtbot, controller, folder, PASSPHRASE, code)
         asker.results.clear()
-        controller.run(deleted, asker.on_done, asker.on_failed, asker)
+        controller.run(deleted, *asker.ears)
         qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
         assert asker.results == [left]
 
@@ -366,7 +332,7 @@ def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothi
     assert state.is_demonstration
     folder = state.library.folder
     asker = Asker()
-    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.patients.search(), *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     (patients,) = asker.results
     assert isinstance(patients, tuple)
@@ -397,24 +363,22 @@ def begun_demonstration(qtbot: QtBot, controller: LibraryController, monkeypatch
 def test_after_the_demonstration_the_library_opens_without_its_passphrase_for_the_same_user(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    opened(qtbot, controller, folder, "vi")
+    opened(qtbot, controller, folder, PASSPHRASE, "vi")
     begun_demonstration(qtbot, controller, monkeypatch)
     kept = controller.kept
     assert kept is not None
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open_kept()
-    (state,) = reported.args or []
+    state = opened_by(qtbot, controller, lambda holder: holder.open_kept())
     assert (state.operator.code, state.library.folder, state.is_continued) == ("vi", folder, True)
     assert controller.kept is None
     asker = Asker()
-    controller.run(stored, asker.on_done, asker.on_failed, asker)
+    controller.run(stored, *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
 
 
 def test_the_key_that_is_kept_meanwhile_is_one_and_in_no_file(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    state = opened(qtbot, controller, folder)
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     data_key = state.library.data_key
     assert data_key is not None
     key = bytes(data_key)
@@ -433,18 +397,18 @@ def test_the_key_that_is_kept_meanwhile_is_one_and_in_no_file(
 def test_who_logs_out_or_left_the_desk_is_not_kept_behind_the_demonstration(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for log_out in (controller.forget, controller.close):
-        opened(qtbot, controller, folder)
+    for is_closed in (False, True):
+        opened(qtbot, controller, folder, PASSPHRASE, "hk")
         begun_demonstration(qtbot, controller, monkeypatch)
         kept = controller.kept
         assert kept is not None
-        log_out()
-        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-            controller.open_kept()
-        assert reported.args is not None
-        assert reported.args[0] == "The library is locked."
+        if is_closed:
+            controller.close()
+        else:
+            controller.call(lambda holder: holder.forget(), None, None, controller)
+        assert not_opened_by(qtbot, controller, lambda holder: holder.open_kept())[0] == "The library is locked."
         assert not kept.data_key  # wiped
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     controller.lock()
     begun_demonstration(qtbot, controller, monkeypatch)
     assert controller.kept is None
@@ -453,14 +417,12 @@ def test_who_logs_out_or_left_the_desk_is_not_kept_behind_the_demonstration(
 def test_the_next_window_opens_the_library_of_whoever_is_logged_in_and_no_locked_one(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    opened(qtbot, controller, folder, "vi")
+    opened(qtbot, controller, folder, PASSPHRASE, "vi")
     kept = controller.finish(must_keep=True)
     assert kept is not None
     following = LibraryController()
     try:
-        with qtbot.waitSignal(following.opened, timeout=WAIT_MS) as reported:
-            following.open_kept(kept)
-        (state,) = reported.args or []
+        state = opened_by(qtbot, following, lambda holder: holder.open_kept(kept))
         assert (state.operator.code, state.is_continued) == ("vi", True)
         following.lock()
         assert following.finish(must_keep=True) is None
@@ -469,13 +431,13 @@ def test_the_next_window_opens_the_library_of_whoever_is_logged_in_and_no_locked
 
 
 def test_at_the_programs_end_nobody_is_kept(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     assert controller.finish() is None
     assert controller.kept is None
 
 
 def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker, ended = Asker(), Event()
 
     def work(_library: OpenedLibrary, report: Report) -> None:
@@ -485,9 +447,9 @@ def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: Libra
         finally:
             ended.set()
 
-    controller.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.run_long(work, *asker.all_ears)
     qtbot.waitUntil(lambda: asker.shares[:1] == [0.5], timeout=WAIT_MS)
-    controller.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.run_long(work, *asker.all_ears)
     assert asker.refusals == [("Another task is still running.", "Wait until it has finished, or stop it.")]
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()  # stops it first
@@ -498,7 +460,7 @@ def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: Libra
 def test_quiet_work_gives_way_to_what_is_asked_and_begins_again_afterwards(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker, began, may_end = Asker(), [], Event()
 
     def quiet(_library: OpenedLibrary, report: Report) -> str:
@@ -521,7 +483,7 @@ def test_quiet_work_gives_way_to_what_is_asked_and_begins_again_afterwards(
 
 
 def test_quiet_work_waits_for_what_was_asked_before(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker, may_end = Asker(), Event()
 
     def asked_for(_library: OpenedLibrary, _report: Report) -> str:
@@ -536,7 +498,7 @@ def test_quiet_work_waits_for_what_was_asked_before(qtbot: QtBot, controller: Li
 
 
 def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
     controller.run_long(lambda library, _report: library.folder, asker.on_done, asker.on_failed, None, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
@@ -566,11 +528,9 @@ def test_a_passphrase_that_is_remembered_opens_next_time(
             return kept.get(name)
 
     monkeypatch.setattr("app.storage.keyring_slot._keyring", Keyring)
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(folder, PASSPHRASE, "hk", must_remember=True)
+    opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open_remembered(folder, "hk")
+    opened_by(qtbot, controller, lambda holder: holder.open_remembered(folder, "hk"))
 
 
 def test_a_refusing_keyring_is_no_reason_not_to_open(
@@ -580,15 +540,14 @@ def test_a_refusing_keyring_is_no_reason_not_to_open(
         raise KeyRefusedError("The keyring does not accept the key", "Unlock it")
 
     monkeypatch.setattr("app.workers.library_opening.remember", refuse)
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(folder, PASSPHRASE, "hk", must_remember=True)
+    opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
 
 
 def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    state = opened(qtbot, controller, folder)
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     key = state.library.data_key
     assert key is not None
     before = bytes(key)
@@ -596,20 +555,20 @@ def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(
     qtbot.waitUntil(lambda: not key, timeout=WAIT_MS)
     with pytest.raises(LibraryLockedError):
         state.library.library.patients.search()
-    controller.run(lambda library: len(library.library.patients.search()), asker.on_done, asker.on_failed, asker)
-    controller.unlock("hk", "not this passphrase", None, asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: len(library.library.patients.search()), *asker.ears)
+    controller.call(unlocking("not this passphrase"), *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert not asker.results
     assert not key
-    controller.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
+    controller.call(unlocking(PASSPHRASE), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
-    assert asker.results == [None, len(state.library.library.patients.search())]
+    assert asker.results == [Unlocked(), len(state.library.library.patients.search())]
     assert bytes(key) == before
 
 
 def test_a_lock_waits_for_long_work(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     asker, slow = Asker(), Event()
-    state = opened(qtbot, controller, folder)
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     key = state.library.data_key
     assert key is not None
 
@@ -628,7 +587,7 @@ def test_a_lock_waits_for_long_work_that_was_stopped_and_has_not_ended(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, begun, slow = Asker(), Event(), Event()
-    state = opened(qtbot, controller, folder)
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     key = state.library.data_key
     assert key is not None
 
@@ -641,7 +600,7 @@ def test_a_lock_waits_for_long_work_that_was_stopped_and_has_not_ended(
     assert begun.wait(60)
     controller.stop_long()
     controller.lock()
-    controller.look(folder, asker.on_done, asker.on_failed, asker)  # is asked after what locks
+    controller.call(lambda holder: holder.look(folder), *asker.ears)  # is asked after what locks
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     assert key
     slow.set()
@@ -652,7 +611,7 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    state = opened(qtbot, controller, folder)
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     before = state.library.data_key
     assert before is not None
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
@@ -660,7 +619,10 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
     controller.run(
         lambda library: library.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN)), None, None, asker
     )
-    controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.reopen(
+        lambda holder, report: holder.change_key("ab", report),
+        *asker.all_ears,
+    )
     assert not controller.state  # nothing is begun meanwhile
     qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == []
@@ -669,7 +631,7 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
     assert now is not None
     assert now.library.data_key == slots.open("hk", PASSPHRASE)
     assert slots.codes == ("hk", "vi")
-    controller.run(lambda library: library.library.operators.list(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.operators.list(), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     operators = asker.results[1]
     assert isinstance(operators, tuple)
@@ -680,12 +642,15 @@ def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     with open_library(folder, PASSPHRASE, "hk"):
-        controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+        controller.reopen(
+            lambda holder, report: holder.change_key("", report),
+            *asker.all_ears,
+        )
         qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [("Another program has the library open.", "Close that program, then try again.")]
-    controller.run(lambda library: len(library.library.operators.list()), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: len(library.library.operators.list()), *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
 
 
@@ -693,7 +658,7 @@ def test_what_is_no_address_is_refused_and_leaves_nothing(
     qtbot: QtBot, controller: LibraryController, tmp_path: Path
 ) -> None:
     asker = Asker()
-    controller.join(tmp_path / "station", "nowhere", "", "", asker.on_done, asker.on_failed, asker)
+    controller.call(lambda holder: holder.join(tmp_path / "station", "nowhere", "", ""), *asker.ears)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     (joined,) = asker.results
     assert isinstance(joined, Joined)
@@ -705,22 +670,23 @@ def test_what_is_no_address_is_refused_and_leaves_nothing(
 def test_a_move_that_is_refused_leaves_the_library_open(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    state = opened(qtbot, controller, folder)
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
-    controller.move_to_server("nowhere", "", str(folder), asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.reopen(
+        lambda holder, report: holder.move_to_server("nowhere", "", str(folder), report),
+        *asker.all_ears,
+    )
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert "This is not the address of a PostgreSQL server" in asker.refusals[0][0]
     assert controller.state is not None
     assert controller.state.library is state.library
-    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
-    assert asker.results == [()]
+    assert asked(qtbot, controller, lambda library: library.library.patients.search()) == ()
 
 
 def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
-    controller.bring_back(asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.reopen(lambda holder, report: holder.bring_back(report), *asker.all_ears)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert "This library is already in a folder" in asker.refusals[0][0]
     assert controller.state is not None
@@ -736,7 +702,7 @@ def test_a_watch_that_waits_for_a_server_holds_nobody_up(
         return answers.wait(WAIT_MS / 1000)
 
     monkeypatch.setattr(LibraryWatch, "_listen", listen)
-    opened(qtbot, controller, folder)
+    opened(qtbot, controller, folder, PASSPHRASE, "hk")
     qtbot.waitUntil(asked.is_set, timeout=WAIT_MS)
     began_s = time.monotonic()
     controller.close()

@@ -7,7 +7,6 @@ from pathlib import Path
 from uuid import UUID
 
 import pytest
-from PySide6.QtCore import QObject
 from PySide6.QtTest import QSignalSpy
 from pytestqt.qtbot import QtBot
 
@@ -27,10 +26,12 @@ from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role
 from app.workers.library_controller import LibraryController
+from app.workers.library_state import Unlocked
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.app.library_answers import WAIT_MS, Asker
+from tests.app.library_answers import opened as opened_at
 
 PASSPHRASE = "four short words here"
-WAIT_MS = 20_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
@@ -55,14 +56,9 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 @pytest.fixture
 def controller(qtbot: QtBot, folder: Path) -> Iterator[LibraryController]:
     controller = LibraryController()
-    open_at(qtbot, controller, folder)
+    opened_at(qtbot, controller, folder, PASSPHRASE)
     yield controller
     controller.finish()
-
-
-def open_at(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(folder, PASSPHRASE)
 
 
 def opened_of(controller: LibraryController) -> OpenedLibrary:
@@ -140,11 +136,11 @@ def test_what_was_recorded_meanwhile_is_home_at_the_next_start(
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
     elsewhere.rename(folder)
-    open_at(qtbot, controller, folder)
+    opened_at(qtbot, controller, folder, PASSPHRASE)
     assert controller.state is not None
     assert controller.state.brought_home == {recording_id}
     assert [(one.recording_id, one.problem) for one in controller.state.interrupted] == [(recording_id, "")]
-    open_at(qtbot, controller, folder)
+    opened_at(qtbot, controller, folder, PASSPHRASE)
     assert controller.state.brought_home == frozenset()
 
 
@@ -194,28 +190,6 @@ def test_keys_are_changed_of_the_library_that_is_open_only(
         _slots(opened)
 
 
-class Asker(QObject):
-    """Notes what it is reported."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.results: list[object] = []
-        self.refusals: list[tuple[str, str]] = []
-
-    def on_done(self, result: object) -> None:
-        self.results.append(result)
-
-    def on_failed(self, what: str, remedy: str) -> None:
-        self.refusals.append((what, remedy))
-
-    def on_progressed(self, share: float, what: str) -> None:
-        """Not what is asked here."""
-
-    @property
-    def has_received(self) -> bool:
-        return bool(self.results or self.refusals)
-
-
 @pytest.mark.endurance
 def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     qtbot: QtBot, controller: LibraryController, folder: Path
@@ -223,8 +197,8 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     """Its database is another file then, and its folder the same."""
     asker, before = Asker(), opened_of(controller)
     gone = QSignalSpy(controller.gone)
-    controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    qtbot.waitUntil(lambda: asker.has_received, timeout=WAIT_MS)
+    controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
+    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == []
     assert opened_of(controller) is not before
     qtbot.wait(1200)
@@ -251,7 +225,7 @@ def test_the_key_is_not_changed_while_the_library_is_gone(
     asker, opened = Asker(), opened_of(controller)
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(folder.with_name("renamed"))
-    controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
     assert asker.refusals == [controller.gone_words]
     assert controller.is_gone
     assert opened_of(controller) is opened
@@ -275,8 +249,11 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     monkeypatch.setattr("app.storage.bringing_home._copy", full)
     with qtbot.waitSignals([controller.refused, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
-    controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    qtbot.waitUntil(lambda: asker.has_received, timeout=WAIT_MS)
+    controller.reopen(
+        lambda holder, report: holder.change_key("ab", report),
+        *asker.all_ears,
+    )
+    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     ((what, remedy),) = asker.refusals
     assert what.startswith("Recordings made while the library was unavailable are not in the library yet")
     assert str(opened.shelter.folder) in remedy
@@ -289,13 +266,13 @@ def test_a_library_that_is_closed_while_its_key_changes_stays_closed(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
     assert controller.state is None
     assert controller._watch is None
     with held_alone(folder):
-        assert not asker.has_received
+        assert not bool(asker.results or asker.refusals)
 
 
 @pytest.mark.endurance
@@ -314,8 +291,8 @@ def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
     controller.run_long(lambda library, _report: find_interrupted(library), asker.on_done, asker.on_failed, None, asker)
     qtbot.wait(300)
-    assert not asker.has_received
-    controller.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
+    assert not bool(asker.results or asker.refusals)
+    controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, None), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     (found,) = asker.results[1] if isinstance(asker.results[1], tuple) else ()
     assert (found.recording_id, found.problem) == (recording_id, "")
@@ -330,14 +307,14 @@ def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     for _ in range(4):
-        controller.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
+        controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, delay), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.refusals) == 4, timeout=WAIT_MS)
     assert {what for what, _ in asker.refusals} == {f"The library is no longer in {folder}."}
     assert delay.left_s("hk") == 0.0
     assert not folder.exists()
     elsewhere.rename(folder)
-    controller.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: asker.results == [None], timeout=WAIT_MS)
+    controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, delay), *asker.ears)
+    qtbot.waitUntil(lambda: asker.results == [Unlocked()], timeout=WAIT_MS)
 
 
 @pytest.mark.endurance

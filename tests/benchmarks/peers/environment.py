@@ -10,13 +10,7 @@ PLACE = Path(__file__).parents[3] / "build" / "peers"
 
 
 def peers_python() -> Path:
-    """The Python of the peers' environment.
-
-    Raises
-    ------
-    RuntimeError
-        The peers could not be installed; with what the installer stated.
-    """
+    """The Python of the peers' environment."""
     python = PLACE / "bin" / "python"
     stamp = PLACE / "made-from"
     if stamp.is_file() and stamp.read_text() == REQUIREMENTS.read_text():

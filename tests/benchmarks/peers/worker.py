@@ -24,13 +24,7 @@ class PeerWorker:
         self._process.communicate()
 
     def ask(self, question: dict[str, Any]) -> dict[str, Any]:
-        """Its answer to one question.
-
-        Raises
-        ------
-        RuntimeError
-            The worker ended; what it stated is above.
-        """
+        """Its answer to one question."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._process.stdin.write(json.dumps(question) + "\n")

@@ -13,7 +13,8 @@ from core.body import Joint, Site
 from core.samples import FloatArray
 from core.session import RecordingKind
 from core.signal.pair import pair_of
-from devices.simulation.walker import FreeMotion, Motion, SensorErrors, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Motion, SensorErrors, WalkerSettings
+from tests.simulated import simulation_of
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -31,7 +32,7 @@ LYING = (FreeMotion(duration_s=6.0), FreeMotion("measured", duration_s=30.0, mot
 )
 def test_biases_that_no_rest_has_shown_leave_no_drift(seed: int, recordings: tuple[FreeMotion, ...]) -> None:
     """The angle was off by 5 to 17 deg, and 6 to 9 samples of a hundred lay within two standard deviations."""
-    made = simulate(WalkerSettings(seed, recordings, SITES, errors=BIASED))
+    made = simulation_of(WalkerSettings(seed, recordings, SITES, errors=BIASED))
     found = next(r for r in analyse(made.session).recordings if r.name == "measured")
     truth = made.truth.recordings["measured"].joints[KNEE]
     angle, true = found.joints[KNEE], np.interp(found.time_s, truth.time_s, truth.angle_rad)

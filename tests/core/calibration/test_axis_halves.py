@@ -9,8 +9,9 @@ from core.analysis import analyse
 from core.body import Joint, Site
 from core.results import Method, RecordingAnalysis
 from core.verdicts.model import Verdict
-from devices.simulation.walker import FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings
 from tests.benchmarks.axis_halves import HARDLY_MOVING, JUMP_DEG, WALK, of_seed
+from tests.simulated import session_of
 
 ANKLE = Joint.LEFT_ANKLE
 LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
@@ -22,7 +23,7 @@ WALK_AFTER_FREE_MOTION = (Standing(), FreeMotion(), Walk(strides=12))
 
 
 def walk_of(settings: WalkerSettings, method: Method = Method.ROBUST) -> RecordingAnalysis:
-    return analyse(simulate(settings).session, method).recordings[-1]
+    return analyse(session_of(settings), method).recordings[-1]
 
 
 def gates_of(walk: RecordingAnalysis, joint: Joint) -> list[str]:

@@ -11,7 +11,8 @@ from core.calibration.bare_axis import bare_axes
 from core.calibration.joint_axis import moved
 from core.signal.datasets import gather
 from core.signal.rotations import angle_between
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import session_of
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -34,7 +35,7 @@ def test_axes_that_are_off_come_nearer_by_half_and_more(person: "Person") -> Non
 @pytest.mark.parametrize(("tissue", "is_bare"), [(Tissue.RIGID, True), (Tissue.REAL, False)])
 def test_it_is_reported_which_way_an_ankle_s_axis_was_found(tissue: Tissue, is_bare: bool) -> None:
     recordings = (Standing(duration_s=2.0), FreeMotion(duration_s=6.0), Walk(strides=6))
-    found = analyse(simulate(WalkerSettings(seed=2, tissue=tissue, recordings=recordings, sites=FOOT_ALONE)).session)
+    found = analyse(session_of(WalkerSettings(seed=2, tissue=tissue, recordings=recordings, sites=FOOT_ALONE)))
     reported = {(f.key, f.where) for f in found.findings}
     assert (("ankle_axis_from_rates", "left_ankle") in reported) is is_bare
 

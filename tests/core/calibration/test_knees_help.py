@@ -12,7 +12,8 @@ from core.calibration import knees_help
 from core.calibration.knees_help import helped_by_knee
 from core.samples import FloatArray
 from core.signal.rotations import angle_between
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
@@ -56,7 +57,7 @@ def distance_from_knee(made: SimulatedSession) -> float:
 def test_a_person_s_ankle_that_only_walked_is_helped(
     changes: dict[str, object], is_helped: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    made = simulate(replace(TURNING, **changes))  # type: ignore[arg-type]  # names of fields
+    made = simulation_of(replace(TURNING, **changes))  # type: ignore[arg-type]  # names of fields
     helped = distance_from_knee(made)
     monkeypatch.setattr(knees_help, "SHARE", 0.0)
     assert helped == pytest.approx(distance_from_knee(made) * (0.5 if is_helped else 1.0), rel=0.02)
@@ -64,7 +65,7 @@ def test_a_person_s_ankle_that_only_walked_is_helped(
 
 @pytest.mark.endurance
 def test_under_tissue_that_turns_in_step_the_help_makes_ankles_truer(monkeypatch: pytest.MonkeyPatch) -> None:
-    walks = [simulate(replace(TURNING, seed=seed, recordings=(Standing(), Walk()))) for seed in range(10)]
+    walks = [simulation_of(replace(TURNING, seed=seed, recordings=(Standing(), Walk()))) for seed in range(10)]
     helped = np.median([error_deg(made) for made in walks])
     monkeypatch.setattr(knees_help, "SHARE", 0.0)
     assert helped < 0.98 * np.median([error_deg(made) for made in walks])

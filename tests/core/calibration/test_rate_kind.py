@@ -8,7 +8,8 @@ from core.body import Site
 from core.calibration.rate_kind import tracks_of_kind
 from core.samples import RateKind, SensorInfo
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import session_of
 
 LEFT = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 RECORDINGS = (Standing(duration_s=2.0), FreeMotion(duration_s=6.0), Walk(strides=5))
@@ -16,7 +17,7 @@ RECORDINGS = (Standing(duration_s=2.0), FreeMotion(duration_s=6.0), Walk(strides
 
 def not_reported(settings: WalkerSettings) -> Session:
     """A session whose sensors do not say what their rates stand for."""
-    session = simulate(settings).session
+    session = session_of(settings)
     return replace(session, sensors=dict.fromkeys(session.sensors, SensorInfo()))
 
 
@@ -33,7 +34,7 @@ def test_all_joints_together_show_instants_from_averages(tissue: Tissue, kind: R
 
 
 def test_sensors_that_show_their_kind_are_not_asked() -> None:
-    session = simulate(WalkerSettings(recordings=(Walk(strides=3),), sites=LEFT, rate_kind=RateKind.AVERAGED)).session
+    session = session_of(WalkerSettings(recordings=(Walk(strides=3),), sites=LEFT, rate_kind=RateKind.AVERAGED))
     tracks, findings = tracks_of_kind(session, session.recordings, frozenset())
     assert tracks.rate_kind is RateKind.INSTANTANEOUS  # what holds for sensors that do not report
     assert not findings

@@ -25,8 +25,9 @@ from devices.simulation.walker import (
     Tissue,
     Walk,
     WalkerSettings,
-    simulate,
 )
+from tests.core.cut_blocks import part_of
+from tests.simulated import session_of, simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -41,7 +42,7 @@ def soft() -> SimulatedSession:
 
 def patient(tissue: Tissue, turn_rad: float) -> SimulatedSession:
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=32, turn_rad=turn_rad))
-    return simulate(WalkerSettings(seed=5, recordings=recordings, tissue=tissue))
+    return simulation_of(WalkerSettings(seed=5, recordings=recordings, tissue=tissue))
 
 
 def slipped(session: Session, site: Site, angle_rad: float, at_s: float = SLIP_S) -> Session:
@@ -92,7 +93,7 @@ def test_a_slip_of_three_degrees_is_not_reported(soft: SimulatedSession) -> None
 def test_axes_that_were_never_right_are_no_slip() -> None:
     """Seed 11's left ankle is 15 deg off with the axes as published; the robust ones say that nothing slipped."""
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=14))
-    session = simulate(WalkerSettings(seed=11, recordings=recordings, tissue=Tissue.REAL)).session
+    session = session_of(WalkerSettings(seed=11, recordings=recordings, tissue=Tissue.REAL))
     found = analyse(session, method=Method.PUBLISHED)
     assert "strap_slipped" not in {one.key for one in found.findings}
     assert all(gait.strides.is_used.any() for gait in found.recordings[-1].gait.values())
@@ -136,7 +137,7 @@ def test_a_slip_holds_until_the_next_free_motion_not_the_next_standing(
     between: Standing | FreeMotion, is_used: bool
 ) -> None:
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=32), between, Walk("walk 2"))
-    session = simulate(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT)).session
+    session = session_of(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT))
     early, late = session.recordings[:3], session.recordings[3:]
     site = Site.LEFT_SHANK
     up = early[0].imu[site].acc_m_s2.mean(axis=0)
@@ -166,7 +167,7 @@ def test_a_slip_in_one_walk_holds_for_the_next(soft: SimulatedSession) -> None:
 @pytest.mark.parametrize("seed", [1, 5])
 def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_reported(seed: int) -> None:
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=14), Walk("walk 2", strides=14, speed_m_s=0.8))
-    session = simulate(WalkerSettings(seed=seed, recordings=recordings, tissue=Tissue.SOFT)).session
+    session = session_of(WalkerSettings(seed=seed, recordings=recordings, tissue=Tissue.SOFT))
     assert "strap_slipped" not in {one.key for one in analyse(session).findings}
     site, second = Site.LEFT_THIGH, session.recordings[-1]
     up = session.recordings[0].imu[site].acc_m_s2.mean(axis=0)
@@ -176,15 +177,10 @@ def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_reporte
     assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == ["walk 2, left_thigh"]
 
 
-def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    keep = (block.time_s >= from_s) & (block.time_s < to_s)
-    return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
-
-
 def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_next_walk() -> None:
     rises = TimedCourse(CourseKind.SIT_TO_STAND, seed=1, rise_s=1.4, name="rises")
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=12), rises, Walk("walk 2", strides=12))
-    session = simulate(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT)).session
+    session = session_of(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT))
 
     def reported(test: PlannedTest | None, session: Session) -> list[str]:
         taken = tuple(replace(one, test=test) if one.name == "rises" else one for one in session.recordings)

@@ -11,7 +11,8 @@ from core.calibration.strap import Slip, is_refuted
 from core.samples import RateKind
 from core.session import Session
 from core.signal.sensors import SensorTracks
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 
 FOOT, SHANK = Site.LEFT_FOOT, Site.LEFT_SHANK
 SLIP_S = 4.0
@@ -20,7 +21,7 @@ SLIP_S = 4.0
 @pytest.fixture(scope="module")
 def session() -> Session:
     walk = Walk(strides=8, standing_before_s=1.5, standing_after_s=2.0)
-    return simulate(WalkerSettings(seed=4, recordings=(Standing(), walk), sites=(SHANK, FOOT))).session
+    return session_of(WalkerSettings(seed=4, recordings=(Standing(), walk), sites=(SHANK, FOOT)))
 
 
 def refuted(session: Session, site: Site, turn_deg: float) -> bool:

@@ -22,7 +22,8 @@ from core.calibration.clinical_sign import (
 from core.calibration.zero import standing_twist, wrapped_to_zero
 from core.samples import FloatArray
 from core.signal.rotations import joint_frame, wrap
-from devices.simulation.walker import Manner, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Manner, Tissue, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 T = np.arange(1000) / 100
 SWING = 9 * np.exp(2 * (np.cos(6 * T) - 1)) - 2  # 7 rad/s forward, 2 back
@@ -134,7 +135,7 @@ def test_an_ankle_takes_its_sign_from_the_way_of_its_foot() -> None:
 
 def test_a_foot_that_hardly_rolls_still_states_which_way_its_ankle_bends() -> None:
     """The shank's swing alone leaves both ankles of this walk in doubt (0.25 and 0.23)."""
-    made = simulate(
+    made = simulation_of(
         WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Walk(strides=8, manner=Manner.FLAT, speed_m_s=0.5),))
     )
     sites = {site for site in LEG_SITES if site.segment is not Segment.THIGH}

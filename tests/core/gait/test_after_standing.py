@@ -7,7 +7,8 @@ from core.body import Side, Site
 from core.gait.foot import follow
 from core.samples import RateKind
 from core.signal.sensors import SensorTracks
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 
 @pytest.mark.endurance
@@ -16,7 +17,7 @@ from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 def test_the_first_step_after_standing_is_as_long_as_it_was(standing_s: float, seed: int) -> None:
     """By the simulated footholds; before, it was 0.4 to 1.1 of it after 6 s, and metres too long after 15 s."""
     walk = Walk(strides=6, standing_before_s=standing_s)
-    made = simulate(WalkerSettings(seed=seed, recordings=(Standing(), walk)))
+    made = simulation_of(WalkerSettings(seed=seed, recordings=(Standing(), walk)))
     tracks = SensorTracks(made.session, made.session.recordings, frozenset(), RateKind.INSTANTANEOUS)
     recording = made.session.recordings[-1]
     for side in Side:

@@ -12,7 +12,8 @@ from core.gait.chosen_strides import leave_out, left_out_by_hand
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
+from tests.simulated import session_of
 
 LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 
@@ -20,7 +21,7 @@ LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 @pytest.fixture(scope="module")
 def session() -> Session:
     played = (Standing(duration_s=2.0), Walk(strides=12))
-    return simulate(replace(DEMONSTRATION, sites=LEFT_LEG, recordings=played)).session
+    return session_of(replace(DEMONSTRATION, sites=LEFT_LEG, recordings=played))
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,8 @@ from core.samples import FloatArray, SensorInfo
 from core.session import Session
 from core.verdicts.gates import clocks_verdict
 from core.verdicts.model import Verdict
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 RNG = np.random.default_rng(3)
@@ -23,7 +24,7 @@ Walked = tuple[Session, RecordingAnalysis]
 
 @pytest.fixture(scope="module")
 def walked() -> Walked:
-    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=10)), sites=FEET)).session
+    session = session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=10)), sites=FEET))
     return session, analyse(session).recordings[0]
 
 

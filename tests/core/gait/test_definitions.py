@@ -21,7 +21,8 @@ from core.samples import FloatArray, RateKind
 from core.signal.orientation import oriented
 from core.signal.robust import robust_sd
 from core.signal.tracks import even_tracks
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 PERCENT = np.arange(101.0)
 WINDOWS = [  # joint, peak, first and last percent of the stride, whether it is a maximum
@@ -170,7 +171,7 @@ def test_even_strides_may_differ_by_an_eighth(odd_s: float, is_outlier: bool) ->
 
 def test_with_a_shank_alone_swing_is_swing_and_stance_unknown() -> None:
     site = Site.RIGHT_SHANK
-    made = simulate(WalkerSettings(sites=(site,), recordings=(Standing(), Walk())))
+    made = simulation_of(WalkerSettings(sites=(site,), recordings=(Standing(), Walk())))
     standing, moving = made.session.recordings
     rest, (track,) = rest_of(standing.imu[site]), even_tracks(moving.imu[site])
     assert rest is not None

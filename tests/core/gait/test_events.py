@@ -12,34 +12,28 @@ from scipy.spatial.transform import Rotation
 import core.gait.events as events_module
 from core.body import Side, Site
 from core.calibration.rest import rest_of
-from core.gait.crossings import first_crossing, onset
+from core.gait.crossings import crossing, onset
 from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
 from core.gait.foot import FootMotion
 from core.gait.sole import SoleTravel, travel_of
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
-from core.signal.orientation import oriented
-from core.signal.pair import OrientedTrack
-from core.signal.tracks import even_tracks
-from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.samples import BoolArray, FloatArray, ImuBlock
+from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings
+from tests.core.gait.feet import foot_of
+from tests.simulated import simulation_of
 
 FOOT = Site.LEFT_FOOT
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
 
 
-def track_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
-    (track,) = even_tracks(block)
-    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
-
-
 def walk_of(settings: WalkerSettings, turn: Rotation | None = None) -> tuple[FootEvents, FootTruth]:
     """Events and truth of the left foot in the second recording; `turn` turns the sensor in its mounting."""
-    made = simulate(replace(settings, sites=(FOOT,)))
+    made = simulation_of(replace(settings, sites=(FOOT,)))
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
     if turn is not None:
         blocks = [replace(b, gyr_rad_s=turn.apply(b.gyr_rad_s), acc_m_s2=turn.apply(b.acc_m_s2)) for b in blocks]
     rest = rest_of(blocks[0])
     assert rest is not None
-    return gait_of(track_of(blocks[1], rest.gyr_rad_s)), made.truth.recordings["walk 1"].feet[Side.LEFT]
+    return gait_of(foot_of(blocks[1], rest.gyr_rad_s)), made.truth.recordings["walk 1"].feet[Side.LEFT]
 
 
 def walking(
@@ -140,10 +134,10 @@ def test_a_foot_that_rolls_is_timed_by_its_pitch_and_is_surer() -> None:
 @pytest.mark.parametrize("speed_m_s", [0.3, 1.19])
 def test_a_prosthetic_foots_toe_off_is_timed_by_its_sole(speed_m_s: float) -> None:
     settings = replace(walking(speed_m_s), prosthetic_side=Side.LEFT)
-    made = simulate(replace(settings, sites=(FOOT,)))
+    made = simulation_of(replace(settings, sites=(FOOT,)))
     rest = rest_of(made.session.recordings[0].imu[FOOT])
     assert rest is not None
-    track = track_of(made.session.recordings[1].imu[FOOT], rest.gyr_rad_s)
+    track = foot_of(made.session.recordings[1].imu[FOOT], rest.gyr_rad_s)
     truth = made.truth.recordings["walk 1"].feet[Side.LEFT]
     assert np.abs(late_s(gait_of(track, is_rigid=True), truth, "toe_off_s")).max() < 0.020
     assert late_s(gait_of(track), truth, "toe_off_s").min() > 0.025  # the pitch reports it late
@@ -195,11 +189,13 @@ def test_a_toe_off_where_no_other_is_goes_where_the_others_are() -> None:
 
 
 def test_standing_and_free_motion_hold_no_strides() -> None:
-    made = simulate(WalkerSettings(recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=20.0)), sites=(FOOT,)))
+    made = simulation_of(
+        WalkerSettings(recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=20.0)), sites=(FOOT,))
+    )
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
     rest = rest_of(blocks[0])
     assert rest is not None
-    standing, free = (gait_of(track_of(block, rest.gyr_rad_s)) for block in blocks)
+    standing, free = (gait_of(foot_of(block, rest.gyr_rad_s)) for block in blocks)
     assert len(standing) == 0
     assert len(free) <= 1  # a foot set down somewhere else; no stride
 
@@ -211,8 +207,8 @@ def test_a_turn_is_measured() -> None:
 
 
 def test_the_first_crossing_lies_between_samples() -> None:
-    assert first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 2.0) == pytest.approx(1.5)
-    assert np.isnan(first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 5.0))
+    assert crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 2.0) == pytest.approx(1.5)
+    assert np.isnan(crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 5.0))
 
 
 @pytest.mark.parametrize("is_reversed", [False, True])
@@ -237,7 +233,7 @@ def test_optics_and_events_agree(test_data: Callable[[str], Path]) -> None:
         block = ImuBlock("foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
         rest = rest_of(block)
         assert rest is not None
-        found = gait_of(track_of(block, rest.gyr_rad_s))
+        found = gait_of(foot_of(block, rest.gyr_rad_s))
         here = [row for row in rows if row["foot"] == side]
         nearest = [int(np.argmin(np.abs(found.initial_contact_s - float(r["ic"]) / rate_hz))) for r in here]
         assert len(set(nearest)) == len(here)

@@ -14,11 +14,11 @@ from core.gait.events import FootEvents, gait_of
 from core.gait.foot import GRAVITY_M_S2, follow
 from core.gait.live import SETTINGS, FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import PHASES, Phase, phases_at
-from core.samples import FloatArray, ImuBlock, RateKind
-from core.signal.orientation import oriented
+from core.samples import FloatArray, ImuBlock
 from core.signal.pair import OrientedTrack
-from core.signal.tracks import even_tracks
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.core.gait.feet import foot_of
+from tests.simulated import session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -27,20 +27,15 @@ MAX_DIFFERENCE_S = 0.030
 ROLLING = (FootEvent.TOE_OFF, FootEvent.INITIAL_CONTACT)
 
 
-def oriented_foot(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
-    (track,) = even_tracks(block)
-    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
-
-
 def walker_feet(settings: WalkerSettings) -> list[OrientedTrack]:
     """The feet in the second recording; the first one is standing."""
     feet = []
-    recordings = simulate(settings).session.recordings
+    recordings = session_of(settings).recordings
     for site in settings.sites:
         standing, walk = (recording.imu[site] for recording in recordings)
         rest = rest_of(standing)
         assert rest is not None
-        feet.append(oriented_foot(walk, rest.gyr_rad_s))
+        feet.append(foot_of(walk, rest.gyr_rad_s))
     return feet
 
 
@@ -303,7 +298,7 @@ def test_optics_feet_are_reported_as_offline(test_data: Callable[[str], Path], i
         block = ImuBlock("foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
         rest = rest_of(block)
         assert rest is not None
-        foot = oriented_foot(block, rest.gyr_rad_s)
+        foot = foot_of(block, rest.gyr_rad_s)
         reported, offline = reported_of(foot, follow(foot).pitch_axis if is_axis_given else None), gait_of(foot)
         for event in FootEvent:
             found[event] += int(np.sum(differences(reported, offline, event) < MAX_DIFFERENCE_S))

@@ -13,8 +13,9 @@ from core.body import Side, Site
 from core.gait.live import FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import Phase
 from core.samples import FloatArray, ImuBlock
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from devices.simulation.walker_motion import TrueFootEvents
+from tests.simulated import session_of, simulation_of
 
 SITE = Site.LEFT_FOOT
 EVENTS = ("heel_rise", "toe_off", "initial_contact", "full_contact")
@@ -22,7 +23,7 @@ EVENTS = ("heel_rise", "toe_off", "initial_contact", "full_contact")
 
 def walked(speed_m_s: float, rate_hz: float = 100.0, standing_after_s: float = 0.5) -> tuple[ImuBlock, TrueFootEvents]:
     walk = Walk(speed_m_s=speed_m_s, strides=8, standing_before_s=1.5, standing_after_s=standing_after_s)
-    made = simulate(WalkerSettings(seed=2, recordings=(walk,), sites=(SITE,), rate_hz=rate_hz))
+    made = simulation_of(WalkerSettings(seed=2, recordings=(walk,), sites=(SITE,), rate_hz=rate_hz))
     return made.session.recordings[0].imu[SITE], made.truth.recordings[walk.name].feet[Side.LEFT].events
 
 
@@ -63,7 +64,7 @@ def test_every_step_is_reported_once_near_its_true_time(speed_m_s: float, rate_h
 def test_a_body_that_turns_over_its_feet_loses_and_invents_no_contact(walk: Walk) -> None:
     """Legs that hang from one pelvis slide and sway on the floor: no stance is as calm as others are."""
     sites = (Site.LEFT_FOOT, Site.RIGHT_FOOT, Site.PELVIS)
-    made = simulate(WalkerSettings(seed=0, recordings=(walk,), sites=sites))
+    made = simulation_of(WalkerSettings(seed=0, recordings=(walk,), sites=sites))
     for site in sites[:2]:
         true_s = made.truth.recordings[walk.name].feet[site.leg_side].events.initial_contact_s
         found_s = times_s(reported_of(made.session.recordings[0].imu[site]), "initial_contact")
@@ -168,7 +169,7 @@ def test_standing_and_a_foot_in_the_air_are_not_walking() -> None:
     settings = WalkerSettings(
         seed=1, recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=10.0)), sites=(SITE,)
     )
-    standing, free = simulate(settings).session.recordings
+    standing, free = session_of(settings).recordings
     assert reported_of(standing.imu[SITE]) == []
     assert len(times_s(reported_of(free.imu[SITE]), "initial_contact")) <= 1
 

@@ -14,14 +14,15 @@ from core.gait.strides import strides_of
 from core.samples import RateKind
 from core.signal.orientation import oriented
 from core.signal.tracks import even_tracks
-from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
 from devices.simulation.walker_motion import TrueFootEvents
+from tests.simulated import simulation_of
 
 SHANK = Site.RIGHT_SHANK
 
 
 def events_of(settings: WalkerSettings) -> tuple[FootEvents, TrueFootEvents]:
-    made = simulate(replace(settings, sites=(SHANK,)))
+    made = simulation_of(replace(settings, sites=(SHANK,)))
     standing, moving = made.session.recordings
     rest = rest_of(standing.imu[SHANK])
     assert rest is not None

@@ -11,8 +11,9 @@ from core.gait.stairs import FootClimbs, on_stairs
 from core.gait.strides import Reason, strides_of, strides_of_feet
 from core.samples import FloatArray
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import Standing, Treadmill, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Treadmill, Walk, WalkerSettings
 from tests.core.gait.test_strides import feet_events
+from tests.simulated import session_of
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 LEVEL_M, TREADS_M = 1.25, 0.6
@@ -147,9 +148,9 @@ def test_strides_on_stairs_are_left_out_with_their_reason() -> None:
 
 
 def test_a_climb_in_every_stride_is_stairs_only_where_they_are_declared() -> None:
-    made = simulate(
+    made = session_of(
         WalkerSettings(recordings=(Standing(), Walk(strides=6, treadmill=Treadmill(slope=0.16))), sites=FEET)
-    ).session
+    )
     declared = replace(made.recordings[-1], test=PlannedTest(TimedProtocol.STAIRS))
     other = replace(made.recordings[-1], test=PlannedTest(TimedProtocol.TEN_METRES))
     found = []

@@ -18,7 +18,8 @@ from core.samples import FloatArray, ImuBlock, RateKind
 from core.signal.orientation import oriented
 from core.signal.tracks import MAX_BRIDGED_GAP_S, even_tracks
 from devices.files.session_folder import read_session
-from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 SAME_S = 0.05
@@ -86,7 +87,7 @@ def test_contacts_on_the_straight_are_found_and_turns_left_out(loss: float, spee
     walk = Walk(speed_m_s=speed_m_s, strides=18, turn_rad=np.pi)
     for seed in range(2):
         settings = WalkerSettings(seed=seed, recordings=(Standing(), walk), tissue=tissue, loss_fraction=loss)
-        made = simulate(replace(settings, sites=tuple(FEET.values())))
+        made = simulation_of(replace(settings, sites=tuple(FEET.values())))
         standing, walked = made.session.recordings
         for side, site in FEET.items():
             rest = rest_of(standing.imu[site])

@@ -10,7 +10,8 @@ from core.body import Joint, Side, Site
 from core.gait.strides import Reason
 from core.samples import ImuBlock
 from core.signal import tracks
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 
 
 @pytest.mark.endurance
@@ -18,7 +19,7 @@ def test_the_seams_between_blocks_cost_no_stride_and_no_phase(monkeypatch: pytes
     """Seams within a swing, and on landings, which the two blocks report on either side of it or both on the far
     one."""
     recordings = (Standing(), Walk(strides=30))
-    session = simulate(WalkerSettings(seed=4, recordings=recordings, sites=(Site.LEFT_FOOT, Site.RIGHT_SHANK))).session
+    session = session_of(WalkerSettings(seed=4, recordings=recordings, sites=(Site.LEFT_FOOT, Site.RIGHT_SHANK)))
     whole = analyse(session).recordings[0].gait
     monkeypatch.setattr(tracks, "OVERLAP_S", 6.0)
     landings_s = np.concatenate([[10.3, 10.7], *(whole[side].strides.start_s for side in Side)])
@@ -44,7 +45,7 @@ def reversed_in_time(block: ImuBlock) -> ImuBlock:
 )
 def test_walking_backward_leaves_every_sign_and_stride_in_doubt(turned_sign: dict[Joint, int]) -> None:
     """The shank swings the other way: knees bend against it, and an ankle that followed it would be mirrored."""
-    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=12)))).session
+    session = session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=12))))
     standing, walk = session.recordings
     backward = replace(walk, imu={site: reversed_in_time(block) for site, block in walk.imu.items()})
     found = analyse(replace(session, recordings=(standing, backward), turned_sign=turned_sign))

@@ -26,7 +26,8 @@ from core.session import Recording, RecordingKind, Session
 from core.signal.pair import OrientedTrack, pair_up
 from core.signal.rotations import joint_frame, wrap
 from core.signal.tracks import Track
-from devices.simulation.walker import FreeMotion, JointTruth, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, JointTruth, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -49,7 +50,7 @@ class LiveVisit:
 
 
 def visit(settings: WalkerSettings) -> LiveVisit:
-    made = simulate(
+    made = simulation_of(
         replace(settings, sites=SITES, recordings=(Standing(), FreeMotion(), Walk(strides=10, standing_before_s=2.0)))
     )
     found = analyse(made.session)

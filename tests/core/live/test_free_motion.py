@@ -1,10 +1,7 @@
 """A whole free motion, live: gauges close, the weakest joint is asked for, late clocks are reported."""
 
-from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import pairwise
 
-import numpy as np
 import pytest
 
 from core.body import LEG_SITES, Joint, Side, Site
@@ -12,9 +9,10 @@ from core.calibration.rest import rest_of
 from core.live.free_motion import FreeMotionState, LiveFreeMotion
 from core.live.lag import LagVerdict
 from core.live.sensors import LiveSensor
-from core.samples import ImuBlock
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
-from devices.simulation.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings, simulate
+from devices.simulation.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings
+from tests.core.cut_blocks import in_blocks
+from tests.simulated import simulation_of
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 
@@ -22,7 +20,9 @@ LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 def made(sites: tuple[Site, ...] = LEFT, motion: Motion = Motion.FULL, late_s: float = 0.0) -> SimulatedSession:
     recordings = (Standing(), FreeMotionRecording(duration_s=18.0, motion=motion))
     late = {Site.LEFT_SHANK: late_s} if late_s else {}
-    return simulate(WalkerSettings(seed=3, recordings=recordings, sites=sites, tissue=Tissue.SOFT, clock_late_s=late))
+    return simulation_of(
+        WalkerSettings(seed=3, recordings=recordings, sites=sites, tissue=Tissue.SOFT, clock_late_s=late)
+    )
 
 
 def sensors_of(session: SimulatedSession) -> dict[Site, LiveSensor]:
@@ -37,17 +37,6 @@ def sensors_of(session: SimulatedSession) -> dict[Site, LiveSensor]:
 def watched(session: SimulatedSession, block_s: float = 0.033) -> list[FreeMotionState]:
     motion = LiveFreeMotion(sensors_of(session))
     return [motion.update(blocks) for blocks in in_blocks(session.session.recordings[1].imu, block_s)]
-
-
-def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float) -> Iterator[dict[Site, ImuBlock]]:
-    end_s = max(float(block.time_s[-1]) for block in imu.values())
-    for a, b in pairwise(np.arange(0.0, end_s + 2 * block_s, block_s)):
-        yield {site: part_of(block, a, b) for site, block in imu.items()}
-
-
-def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]))
-    return replace(block, time_s=block.time_s[part], gyr_rad_s=block.gyr_rad_s[part], acc_m_s2=block.acc_m_s2[part])
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -27,6 +26,7 @@ from devices.simulation.walker import (
     simulate,
 )
 from devices.simulation.walker_pelvis import hip_truth
+from tests.core.cut_blocks import in_blocks, part_of
 
 PELVIS_AND_THIGHS = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.PELVIS)
 HIPS = tuple(hip_of(side) for side in Side)
@@ -80,16 +80,6 @@ def true_hips(made: SimulatedSession) -> dict[Joint, HipIdentification]:
     }
 
 
-def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float) -> Iterator[dict[Site, ImuBlock]]:
-    end_s = max(float(block.time_s[-1]) for block in imu.values())
-    for a, b in pairwise(np.arange(0.0, end_s + 2 * block_s, block_s)):
-        yield {site: between(block, a, b) for site, block in imu.items()}
-
-
-def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    return block.select(slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist()))
-
-
 def reported(
     live: LiveWalk, blocks: Iterator[dict[Site, ImuBlock]] | Sequence[Mapping[Site, ImuBlock]]
 ) -> dict[Joint, FloatArray]:
@@ -134,7 +124,7 @@ def test_a_live_hip_reads_what_its_bones_do_first_by_the_vertical_then_by_the_he
 
 def test_blocks_of_any_size_and_order_say_the_same() -> None:
     made = walk()
-    imu = {site: between(block, 0.0, 9.0) for site, block in made.session.recordings[-1].imu.items()}
+    imu = {site: part_of(block, 0.0, 9.0) for site, block in made.session.recordings[-1].imu.items()}
     at_once = reported(live_walk(made), [imu])
     one_by_one = [{site: part} for parts in in_blocks(imu, 0.13) for site, part in reversed(parts.items())]
     for blocks in (list(in_blocks(imu, 0.05)), one_by_one):

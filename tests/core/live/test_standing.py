@@ -1,8 +1,7 @@
 """Standing still, reported block by block: when it is done, who moved, who is silent."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,7 +12,9 @@ from core.live.standing import REQUIRED_S, LiveStanding, StandingState
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind
 from devices.simulation.walker import Standing as StandingRecording
-from devices.simulation.walker import WalkerSettings, simulate
+from devices.simulation.walker import WalkerSettings
+from tests.core.cut_blocks import in_blocks
+from tests.simulated import session_of
 
 BLOCK_S = 0.033
 
@@ -22,20 +23,9 @@ BLOCK_S = 0.033
 def stood() -> Recording:
     """Six simulated sensors at 100 Hz, five seconds of standing."""
     settings = WalkerSettings(seed=4, recordings=(StandingRecording(duration_s=5.0),))
-    recording = simulate(settings).session.recordings[0]
+    recording = session_of(settings).recordings[0]
     assert recording.kind is RecordingKind.STANDING
     return recording
-
-
-def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float) -> Iterator[dict[Site, ImuBlock]]:
-    end_s = max(block.time_s[-1] for block in imu.values())
-    edges = np.arange(0.0, end_s + block_s + 1e-9, block_s)
-    for a, b in pairwise(edges):
-        yield {site: only(block, (block.time_s >= a) & (block.time_s < b)) for site, block in imu.items()}
-
-
-def only(block: ImuBlock, keep: np.ndarray) -> ImuBlock:
-    return ImuBlock(block.sensor, block.time_s[keep], block.gyr_rad_s[keep], block.acc_m_s2[keep])
 
 
 def watched(imu: Mapping[Site, ImuBlock], block_s: float = BLOCK_S) -> list[StandingState[Site]]:
@@ -76,7 +66,7 @@ def test_the_sensor_that_moved_is_named_and_the_count_begins_again(stood: Record
 
 def test_a_silent_sensor_is_named_and_nothing_counts_until_it_is_back(stood: Recording) -> None:
     silent = stood.imu[Site.RIGHT_FOOT]
-    imu = {**stood.imu, Site.RIGHT_FOOT: only(silent, (silent.time_s < 1.0) | (silent.time_s > 2.5))}
+    imu = {**stood.imu, Site.RIGHT_FOOT: silent.select((silent.time_s < 1.0) | (silent.time_s > 2.5))}
     states = watched(imu)
     silences = [state for state in states if state.silent]
     assert {state.silent for state in silences} == {(Site.RIGHT_FOOT,)}
@@ -144,7 +134,7 @@ def test_long_standing_keeps_memory_and_the_latest_seconds(stood: Recording) -> 
 @pytest.mark.parametrize("is_optional", [True, False])
 def test_nobody_waits_for_a_silent_sensor_that_is_optional(stood: Recording, is_optional: bool) -> None:
     silent = stood.imu[Site.RIGHT_FOOT]
-    imu = {**stood.imu, Site.RIGHT_FOOT: only(silent, silent.time_s < 1.0)}
+    imu = {**stood.imu, Site.RIGHT_FOOT: silent.select(silent.time_s < 1.0)}
     standing = LiveStanding(imu, optional=frozenset({Site.RIGHT_FOOT} if is_optional else ()))
     states = [standing.update(blocks) for blocks in in_blocks(imu, BLOCK_S)]
     assert states[-1].silent == (Site.RIGHT_FOOT,)

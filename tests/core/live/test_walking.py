@@ -1,8 +1,7 @@
 """A whole walk, live: the angles, phases and slips of both legs, whatever the blocks."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,7 +16,9 @@ from core.live.walking import LiveWalk, WalkingState
 from core.results import Analysis, JointCalibration
 from core.samples import ImuBlock
 from core.session import Recording
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
+from tests.core.cut_blocks import in_blocks
+from tests.simulated import simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -35,7 +36,7 @@ def made() -> SimulatedSession:
         site_rates_hz={Site.RIGHT_FOOT: 50.0},
         clock_late_s={Site.LEFT_SHANK: 0.02},
     )
-    return simulate(settings)
+    return simulation_of(settings)
 
 
 @pytest.fixture(scope="module")
@@ -60,17 +61,6 @@ def sensors(made: SimulatedSession) -> dict[Site, LiveSensor]:
 
 def walk_of(made: SimulatedSession) -> Recording:
     return made.session.recordings[2]
-
-
-def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float) -> Iterator[dict[Site, ImuBlock]]:
-    end_s = max(float(block.time_s[-1]) for block in imu.values())
-    for a, b in pairwise(np.arange(0.0, end_s + 2 * block_s, block_s)):
-        yield {site: part_of(block, a, b) for site, block in imu.items()}
-
-
-def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]))
-    return replace(block, time_s=block.time_s[part], gyr_rad_s=block.gyr_rad_s[part], acc_m_s2=block.acc_m_s2[part])
 
 
 def joined(states: Sequence[WalkingState], joint: Joint) -> tuple[np.ndarray, np.ndarray]:

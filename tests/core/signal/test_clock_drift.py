@@ -9,13 +9,14 @@ from core.samples import RateKind
 from core.session import Session
 from core.signal.clock_drift import about_clocks, clock_drifts
 from core.signal.sensors import SensorTracks
-from devices.simulation.walker import Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Tissue, Walk, WalkerSettings
+from tests.simulated import session_of
 
 LEFT = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 
 
 def walked(tissue: Tissue, seed: int, sites: tuple[Site, ...] = LEFT, strides: int = 20) -> Session:
-    return simulate(WalkerSettings(seed=seed, recordings=(Walk(strides=strides),), tissue=tissue, sites=sites)).session
+    return session_of(WalkerSettings(seed=seed, recordings=(Walk(strides=strides),), tissue=tissue, sites=sites))
 
 
 def with_fast_clock(session: Session, site: Site, share: float) -> Session:

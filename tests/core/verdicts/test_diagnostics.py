@@ -16,7 +16,8 @@ from core.results import Analysis, Method
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind, Session
 from core.verdicts.diagnostics import diagnostics_of
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 KNEE = Joint.LEFT_KNEE
 
@@ -69,7 +70,7 @@ def test_on_a_real_hinge_the_pictures_agree_with_optics(test_data: Callable[[str
 def test_a_walking_patient_of_known_truth_is_shown_as_he_is(tissue: Tissue, method: Method) -> None:
     sites = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
     settings = WalkerSettings(seed=5, tissue=tissue, sites=sites, recordings=(Standing(), FreeMotion(), Walk()))
-    walked = simulate(settings)
+    walked = simulation_of(settings)
     analysis = analyse(walked.session, method)
     walk = analysis.recordings[-1]
     for joint, calibration in analysis.calibrations[0].joints.items():

@@ -1,6 +1,5 @@
 """Bad input ends in a finding, never in a traceback and never in a silent number (FORMATS, section 4)."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import LEG_SITES, Joint, Segment, Side, Site
+from core.body import Joint, Segment, Side, Site
 from core.findings import Severity
 from core.results import Analysis, Method
 from core.samples import FloatArray, ImuBlock
@@ -25,8 +24,9 @@ from devices.simulation.walker import (
     Tissue,
     Walk,
     WalkerSettings,
-    simulate,
 )
+from tests.core.cut_blocks import Change, changed
+from tests.simulated import session_of, simulation_of
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -34,16 +34,6 @@ if TYPE_CHECKING:
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 KNEE = Joint.LEFT_KNEE
-Change = Callable[[ImuBlock], ImuBlock]
-
-
-def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
-    """The session with the blocks of some sites (and of some recordings only) spoiled."""
-    recordings = []
-    for r in session.recordings:
-        imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
-        recordings.append(replace(r, imu=imu))
-    return replace(session, recordings=tuple(recordings))
 
 
 def first(n: int) -> Change:
@@ -331,7 +321,7 @@ def test_a_coarse_sensor_is_not_clipped_nor_stuck_nor_a_copy(errors: SensorError
     recordings = (Standing(), Walk(standing_before_s=2.0, standing_after_s=2.0))
     for seed in range(2):
         settings = WalkerSettings(seed, recordings, errors=errors, prosthetic_side=Side.LEFT, rate_hz=50.0 * (1 + seed))
-        assert not look_at(simulate(settings).session).findings
+        assert not look_at(session_of(settings)).findings
 
 
 def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> None:
@@ -346,7 +336,7 @@ def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> No
 def test_a_coarse_sensor_in_free_motion_has_a_range_wider_than_that() -> None:
     motion = (FreeMotion(duration_s=8.0),)
     for seed, errors in ((14, VERY_COARSE), (18, VERY_COARSE), (117, COARSE)):
-        made = simulate(WalkerSettings(seed, motion, errors=errors, rate_hz=200.0))
+        made = simulation_of(WalkerSettings(seed, motion, errors=errors, rate_hz=200.0))
         assert not look_at(made.session).findings
 
 
@@ -354,7 +344,7 @@ def test_a_coarse_sensor_in_free_motion_has_a_range_wider_than_that() -> None:
 def test_stamps_that_jitter_lack_no_samples(rate_hz: float) -> None:
     for seed in range(3):
         settings = WalkerSettings(seed, (Standing(), Walk(strides=5)), rate_hz=rate_hz, stamp_jitter_s=0.001)
-        assert not look_at(simulate(settings).session).findings
+        assert not look_at(session_of(settings)).findings
 
 
 @pytest.mark.endurance
@@ -363,7 +353,7 @@ def test_lost_samples_are_counted_with_and_without_jitter(loss: float) -> None:
     still = (Standing(duration_s=30.0),)
     for jitter_s in (0.0, 0.001):
         settings = WalkerSettings(1, still, loss_fraction=loss, stamp_jitter_s=jitter_s)
-        for block in simulate(settings).session.recordings[0].imu.values():
+        for block in session_of(settings).recordings[0].imu.values():
             really = 100.0 * (1.0 - len(block) / 3001)
             assert lost_percent(block) == pytest.approx(really, abs=0.4 + 0.15 * really)
 
@@ -414,26 +404,26 @@ TURNING = WalkerSettings(tissue=Tissue.SOFT, recordings=(Standing(), Walk(turn_r
 
 @pytest.mark.parametrize("site", [Site.LEFT_THIGH, Site.RIGHT_SHANK, Site.LEFT_FOOT])
 def test_one_reversed_sensor_is_reported_and_left_out(site: Site) -> None:
-    looked = look_at(changed(simulate(TURNING).session, REVERSED, (site,)))
+    looked = look_at(changed(session_of(TURNING), REVERSED, (site,)))
     assert [(f.key, f.where) for f in looked.findings] == [("acc_reversed", f"walk 1, {site}")]
     assert looked.unusable == {("standing", site), ("walk 1", site)}
 
 
 def test_of_two_sensors_that_disagree_neither_is_used() -> None:
     two = replace(TURNING, sites=(THIGH, SHANK))
-    looked = look_at(changed(simulate(two).session, REVERSED, (SHANK,)))
+    looked = look_at(changed(session_of(two), REVERSED, (SHANK,)))
     assert ("acc_reversed", "walk 1, left_thigh, left_shank") in {(f.key, f.where) for f in looked.findings}
     assert {("walk 1", THIGH), ("walk 1", SHANK)} <= looked.unusable
 
 
 def test_gyroscopes_off_by_degrees_are_not_taken_for_reversed_accelerometers() -> None:
     errors = SensorErrors(gyro_bias_sd_rad_s=np.deg2rad(1.5), acc_bias_sd_m_s2=0.1)
-    session = simulate(WalkerSettings(seed=2000, errors=errors)).session
+    session = session_of(WalkerSettings(seed=2000, errors=errors))
     assert "acc_reversed" not in {found.key for found in look_at(session).findings}
 
 
 def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
-    session = simulate(replace(TURNING, recordings=(Standing(), FreeMotion(duration_s=5.0), Walk(strides=4)))).session
+    session = session_of(replace(TURNING, recordings=(Standing(), FreeMotion(duration_s=5.0), Walk(strides=4))))
     plain, mirrored = analyse(session), analyse(changed(session, REVERSED))
     assert reported(plain) == reported(mirrored)
     for one, other in zip(plain.recordings, mirrored.recordings, strict=True):
@@ -447,13 +437,13 @@ def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
 def test_sensors_of_a_straight_walk_are_not_called_reversed(manner: Manner) -> None:
     walk = Walk(speed_m_s=0.6, manner=manner, strides=6)
     settings = WalkerSettings(recordings=(walk, FreeMotion(duration_s=6.0)), tissue=Tissue.REAL)
-    assert "acc_reversed" not in {f.key for f in look_at(simulate(settings).session).findings}
+    assert "acc_reversed" not in {f.key for f in look_at(session_of(settings)).findings}
 
 
 def test_sensors_switched_on_one_after_the_other_have_one_clock(leg_visit: Session) -> None:
     """The foot's was started and stopped six seconds after the others: its stamps are right."""
     walk = leg_visit.recordings[-1]
-    whole = simulate(WalkerSettings(sites=(THIGH, SHANK, FOOT), recordings=(Walk(strides=20),))).session.recordings[0]
+    whole = session_of(WalkerSettings(sites=(THIGH, SHANK, FOOT), recordings=(Walk(strides=20),))).recordings[0]
     end_s = float(whole.imu[FOOT].time_s[-1])
 
     def part(b: ImuBlock, from_s: float, to_s: float) -> ImuBlock:

@@ -18,8 +18,9 @@ from core.signal.reception import Reception
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import side_mean
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
 from tests.core.verdicts.built_walk import calibrations, leg, not_read, walk, with_gaps
+from tests.simulated import simulation_of
 
 FOOT, SHANK, THIGH = Site.LEFT_FOOT, Site.LEFT_SHANK, Site.LEFT_THIGH
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
@@ -108,7 +109,7 @@ def test_another_rate_than_the_one_set_hits_the_joints_of_its_sensor(
 @cache
 def walked() -> Session:
     sites = (THIGH, SHANK, FOOT)
-    made = simulate(WalkerSettings(3, (Standing(), FreeMotion(), Walk(strides=14)), sites, tissue=Tissue.SOFT))
+    made = simulation_of(WalkerSettings(3, (Standing(), FreeMotion(), Walk(strides=14)), sites, tissue=Tissue.SOFT))
     return made.session
 
 

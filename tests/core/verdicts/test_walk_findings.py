@@ -17,14 +17,15 @@ from core.timed.found import TimedTest, Turn
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.walk_findings import about_prosthesis, about_turns, about_walk
-from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 
 FEET: Mapping[Side, Site] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 
 
 @pytest.fixture(scope="module")
 def walk() -> RecordingAnalysis:
-    return analyse(simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=13)))).session).recordings[0]
+    return analyse(session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=13))))).recordings[0]
 
 
 def with_used(gait: SideGait, used: int, otherwise: Reason = Reason.TURN) -> SideGait:
@@ -105,7 +106,7 @@ def test_an_angle_with_gaps_in_nearly_every_stride_is_named(
 
 
 def test_standing_through_a_walk_is_no_walk() -> None:
-    stood = simulate(WalkerSettings(seed=4, recordings=(Standing(), Standing("walk 1", duration_s=6.0)))).session
+    stood = session_of(WalkerSettings(seed=4, recordings=(Standing(), Standing("walk 1", duration_s=6.0))))
     walked = replace(stood, recordings=(stood.recordings[0], replace(stood.recordings[1], kind=RecordingKind.WALKING)))
     assert "no_strides" in {finding.key for finding in analyse(walked).findings}
 
@@ -113,7 +114,7 @@ def test_standing_through_a_walk_is_no_walk() -> None:
 @pytest.mark.endurance
 @pytest.mark.parametrize("typed", ["left", "right", "both", "none", ""])
 def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_reported(typed: str) -> None:
-    made = simulate(WalkerSettings(recordings=(Standing(), Walk()), sites=tuple(FEET.values()))).session
+    made = session_of(WalkerSettings(recordings=(Standing(), Walk()), sites=tuple(FEET.values())))
     found = analyse(replace(made, patient=replace(made.patient, prosthetic_side=typed)))
     gait = found.recordings[0].gait
     worn = [side for side in Side if typed in (side.value, "both")]

@@ -1,7 +1,7 @@
 """A sensor that sends what no sensor of its maker sends: numbers beyond its memory, and notices without an end."""
 
 import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
@@ -21,13 +21,6 @@ NOTICE = 0x7003
 
 class StopPressedError(Exception):
     """Somebody pressed Stop."""
-
-
-@pytest.fixture
-def radio() -> Iterator[VirtualRadio]:
-    one = VirtualRadio()
-    yield one
-    one.close()
 
 
 def nobody(*_: object) -> None:

@@ -3,7 +3,7 @@
 Their seconds pass at once. The oracle is what each took, and when: sample for sample, float for float.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -16,13 +16,6 @@ from devices.live import SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.dot.worn_dots import WornDots, not_there
-
-
-@pytest.fixture
-def radio() -> Iterator[VirtualRadio]:
-    one = VirtualRadio()
-    yield one
-    one.close()
 
 
 def stamps_off_s(wearing: WornDots, every: Sequence[DecodedSensor]) -> list[FloatArray]:

@@ -5,7 +5,6 @@ Where nobody could be received, the reason is stated.
 
 import builtins
 import importlib.util
-import socket
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,12 +15,7 @@ from devices.dot.source import DotSource
 from devices.live import SourceRefusedError
 from devices.search import search
 from devices.transport.bluetooth import Announced, BluetoothMissingError, Radio
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+from tests.devices.scripted import free_port
 
 
 def in_air(*names: str) -> Radio:

@@ -1,6 +1,5 @@
 """Tests of DOTs through two whole Bluetooth stacks: advertisements, ATT, subscriptions and an MTU that cuts."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +21,6 @@ from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
 
 LIVE_MTU = 66  # as much as a sample takes
 UTC_S = 1_600_000_000
-
-
-@pytest.fixture
-def radio() -> Iterator[VirtualRadio]:
-    one = VirtualRadio()
-    yield one
-    one.close()
 
 
 def test_what_they_advertise_shows_that_they_are_dots(radio: VirtualRadio) -> None:

@@ -3,8 +3,6 @@
 The rate is set before they are synchronised.
 """
 
-from collections.abc import Iterator
-
 import pytest
 
 from devices.dot.memory import OwnClockError, list_files, record, stop
@@ -20,13 +18,6 @@ from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.dot.worn_dots import WornDots
 
 UTC_S = 1_600_000_000
-
-
-@pytest.fixture
-def radio() -> Iterator[VirtualRadio]:
-    one = VirtualRadio()
-    yield one
-    one.close()
 
 
 def kept(_data: bytes) -> None:

@@ -207,7 +207,7 @@ def test_how_long_a_sample_waits_to_be_read_does_not_count_for_its_way(
     simulated = Simulated(offset_s)
     monkeypatch.setattr("devices.drivers.lsl._library", lambda: simulated)
     source = LslSource(LslStream("s", "IMU", "", "", RATE_HZ), now_ns=lambda: round(simulated.now_s * 1e9))
-    source._sensors, source._inlet = (LslSensor("s", (0, 1, 2), (3, 4, 5), 1.0, 1.0),), simulated
+    source.sensors, source._inlet = (LslSensor("s", (0, 1, 2), (3, 4, 5), 1.0, 1.0),), simulated
     blocks = [block for _ in range(50) for block in source.read(lambda _: None)]
     wrong_s = np.concatenate([block.time_s - block.gyr_rad_s[:, 0] for block in blocks])
     assert np.abs(wrong_s[50:]).max() < 0.0007

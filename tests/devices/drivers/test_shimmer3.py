@@ -1,23 +1,20 @@
 """Tests of reading what a Shimmer3 sends: with and without checksums, damaged or not, through a real port."""
 
 import random
-import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from core.samples import ImuBlock
 from devices.drivers.shimmer3 import DRIVER, EMULATED, VERSION, Shimmer3, Shimmer3Framer, calibrating, checksum
-from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, FIRST_TICKS, GYR_CALIBRATION, Shimmer3Voice
+from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, GYR_CALIBRATION, Shimmer3Voice
 from devices.emulators.transports import Emulation, PseudoTerminal
-from devices.live import SourceLostError, SourceRefusedError
+from devices.live import SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Decoder
 from devices.transport.ports import PortInfo, SerialPort
-from tests.devices.scripted import ScriptedChannel
+from tests.devices.scripted import ScriptedChannel, received_for
 
 PERIOD = 320
 OLD = (0, 11, 0)
@@ -99,51 +96,6 @@ def test_what_is_missing_is_counted_by_the_clock_even_where_it_begins_again(seco
     assert (sensor.counts.received, sensor.counts.lost, sensor.counts.damaged) == (1000, missing, 0)
 
 
-def fuzz(frames: int, seed: int, has_checksum: bool) -> tuple[int, int, int]:
-    """Damage some frames; the clean ones, those of them that were found, and the most bytes held back."""
-    chance, voice = random.Random(seed), streaming(has_checksum)
-    framer, clean, longest = Shimmer3Framer(info(has_checksum)), set(), 0
-    for number in range(frames):
-        frame = voice.sample(number)
-        kind = chance.random()
-        if kind < 0.90:
-            clean.add(number)
-        elif kind < 0.925:
-            k = chance.randrange(len(frame))
-            frame = frame[:k] + bytes([frame[k] ^ (1 << chance.randrange(8))]) + frame[k + 1 :]
-        elif kind < 0.95:
-            frame = frame[: chance.randrange(len(frame))]
-        elif kind < 0.975:
-            frame = frame[chance.randrange(1, len(frame)) :]
-        else:
-            frame = chance.randbytes(chance.randrange(1, 60))
-        framer.feed(frame, number * PERIOD / 32768)
-        longest = max(longest, len(framer._held))
-    framer.flush()
-    found = {round((row[0] * 32768 - framer._before - FIRST_TICKS) / PERIOD) for row in framer.received.rows}
-    return len(clean), len(clean & found), longest
-
-
-def test_damaged_frames_cost_no_clean_one_where_there_are_checksums() -> None:
-    clean, found, longest = fuzz(5_000, 1, has_checksum=True)
-    assert found == clean
-    assert longest < 50
-
-
-def test_damaged_frames_cost_one_clean_one_in_a_thousand_at_most_without_checksums() -> None:
-    clean, found, longest = fuzz(5_000, 2, has_checksum=False)
-    assert clean - found <= 5
-    assert longest < 50
-
-
-@pytest.mark.endurance
-def test_damaged_frames_cost_no_clean_one_of_many() -> None:
-    clean, found, _ = fuzz(100_000, 3, has_checksum=True)
-    assert found == clean
-    clean, found, _ = fuzz(100_000, 4, has_checksum=False)
-    assert clean - found <= 100  # beside a damaged one: its rest looks like the clean one's end
-
-
 @pytest.mark.parametrize("has_checksum", [True, False])
 def test_noise_alone_gives_next_to_nothing(has_checksum: bool) -> None:
     chance, framer = random.Random(5), Shimmer3Framer(info(has_checksum))
@@ -163,27 +115,11 @@ def test_a_stream_whose_channels_nobody_reported_is_not_understood() -> None:
 # through a real port
 
 
-@pytest.fixture
-def port(tmp_path: Path) -> Path:
-    if sys.platform == "win32":
-        pytest.skip("there are no pseudo-terminals here")
-    return tmp_path / "shimmer"
-
-
 @pytest.fixture(params=[(0, 16, 6), OLD])
 def emulation(request: pytest.FixtureRequest, port: Path) -> Iterator[Emulation]:
     one = Emulation(Shimmer3Voice(firmware=request.param), lambda: PseudoTerminal(port))
     yield one
     one.close()
-
-
-def received_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
-    blocks: list[ImuBlock] = []
-    kept: list[bytes] = []
-    until_s = time.monotonic() + seconds
-    while time.monotonic() < until_s:
-        blocks += source.read(kept.append)
-    return blocks, kept
 
 
 @pytest.mark.endurance
@@ -212,26 +148,6 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
     assert len(live) > 60
     assert np.array_equal(sensor.block.gyr_rad_s[: len(live)], live)
     assert (sensor.counts.lost, sensor.counts.damaged) == (0, 0)
-
-
-@pytest.mark.endurance
-def test_a_sensor_that_vanishes_and_returns_is_received_again(port: Path) -> None:
-    emulation = Emulation(Shimmer3Voice(), lambda: PseudoTerminal(port))
-    source = ByteSource(Shimmer3(), SerialPort(PortInfo(emulation.place)))
-    source.open()
-    try:
-        received_for(source, 0.2)
-        emulation.vanish()
-        with pytest.raises(SourceLostError):
-            received_for(source, 1.0)
-        source.close()
-        emulation.come_back()
-        source.open()  # it was still streaming
-        blocks, _ = received_for(source, 0.2)
-    finally:
-        source.close()
-        emulation.close()
-    assert sum(len(block) for block in blocks) > 10
 
 
 @pytest.mark.parametrize(("owned", "period"), [(640, 320), (200, 200), (160, 160), (64, 160)])

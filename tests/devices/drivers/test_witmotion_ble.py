@@ -3,7 +3,7 @@
 Their samples lie where they were taken, as far as known.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -109,13 +109,6 @@ def test_a_sample_that_is_lost_singly_is_not_seen() -> None:
 def turning(at_ns: float) -> Sequence[float]:
     second = at_ns / 1e9
     return (second * 37 % 300, -second * 91 % 200, 3.5, 0.25, second * 3 % 7, 1.0)
-
-
-@pytest.fixture
-def radio() -> Iterator[VirtualRadio]:
-    one = VirtualRadio()
-    yield one
-    one.close()
 
 
 Reach = Callable[[VirtualRadio, Sequence[EmulatedWitBle]], Sequence[Announced]]

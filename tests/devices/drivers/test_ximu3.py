@@ -17,7 +17,7 @@ from devices.source import SourceInfo
 from devices.stream import ByteSource, Decoder, Row
 from devices.transport.channels import Channel, TcpChannel, UdpChannel
 from devices.transport.ports import PortInfo, SerialPort
-from tests.devices.scripted import ScriptedChannel
+from tests.devices.scripted import ScriptedChannel, free_port
 
 INFO = SourceInfo(DRIVER, VERSION, sensors=("A",), settings={"rate_hz": 100.0})
 
@@ -227,10 +227,9 @@ def emulated(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[X
             case "tcp":
                 made.append(TcpServer())
             case "udp":
-                made.append(UdpSender(free_port))
+                made.append(UdpSender(free_port()))
         return made[-1]
 
-    free_port = _free_port()
     emulation = Emulation(voice, make)
     transport = made[0]
     if isinstance(transport, TcpServer):
@@ -240,14 +239,6 @@ def emulated(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[X
     else:
         yield voice, SerialPort(PortInfo(emulation.place))
     emulation.close()
-
-
-def _free_port() -> int:
-    import socket
-
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.mark.endurance

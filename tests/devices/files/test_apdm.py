@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Site
 from core.samples import RateKind
-from devices.files.apdm import apdm_trial, read_apdm
+from devices.files.apdm import apdm_trial
 from devices.files.refusal import FileRefusedError
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 FindData = Callable[[str], Path]
 FOLDER = "vendor_exports/apdm"
@@ -54,10 +54,7 @@ def monitors(path: Path, acc: float = 9.81, gyr: float = 0.1) -> Path:
 
 
 def refusal(path: Path) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        read_apdm(path)
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(apdm_trial, [path])
 
 
 def test_the_orientation_turns_gravity_up(test_data: FindData) -> None:
@@ -142,7 +139,7 @@ def test_other_units_are_refused_with_their_name(tmp_path: Path) -> None:
         monitors(tmp_path / "c.csv", acc=1.0)
     )
     assert '"Left Thigh" are in deg/s, not in rad/s' in refusal(monitors(tmp_path / "d.csv", gyr=180.0))
-    read_apdm(monitors(tmp_path / "e.csv", acc=13.0, gyr=34.0))  # a hard blow, as fast as the sensor can
+    apdm_trial([monitors(tmp_path / "e.csv", acc=13.0, gyr=34.0)])  # a hard blow, as fast as the sensor can
 
 
 def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:

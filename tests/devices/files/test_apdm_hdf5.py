@@ -18,7 +18,7 @@ from devices.files import hdf5
 from devices.files.apdm import apdm_trial
 from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 FindData = Callable[[str], Path]
 Samples = dict[str, NDArray[np.float64]]
@@ -71,10 +71,7 @@ def version_4(path: Path, version: int = 4) -> Path:
 
 
 def refusal(path: Path) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        apdm_trial([path])
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(apdm_trial, [path])
 
 
 def test_samples_of_an_export_come_back_from_hdf5(test_data: FindData, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from devices.files.formats import format_of
 from devices.files.gathering import gather
 from devices.files.refusal import FileRefusedError
 from tests.swinging_sensor import SwingingSensor, swinging_sensor
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 HEADS = ("name", "component", "type", "tracked_point", "units")
 IMU = "sub-01_task-walk_tracksys-imu"
@@ -72,10 +72,7 @@ def bids(
 
 
 def refusal(path: Path, rate_hz: float | None = None) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        bids_motion_trial([path], rate_hz)
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(bids_motion_trial, [path], rate_hz)
 
 
 def test_accelerometers_and_gyroscopes_become_sensors(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from devices.files.csv_tables import csv_trial
 from devices.files.formats import recognised
 from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 FindData = Callable[[str], Path]
 Columns = dict[str, NDArray[np.float64]]
@@ -58,10 +58,7 @@ def finding(imported: ImportedFiles, key: str) -> Finding:
 
 
 def refusal(path: Path, rate_hz: float | None = None) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        csv_trial([path], rate_hz)
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(csv_trial, [path], rate_hz)
 
 
 @pytest.mark.parametrize(

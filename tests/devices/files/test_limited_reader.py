@@ -23,17 +23,7 @@ from core.findings import Finding, Severity
 from core.samples import ImuBlock
 from core.session import Session
 from devices.files import limited_reader
-from devices.files.answers import (
-    Array,
-    BrokenAnswerError,
-    block_from,
-    details_of_block,
-    details_of_findings,
-    findings_from,
-    receive,
-    refusal_from,
-    send,
-)
+from devices.files.answers import Array, BrokenAnswerError, details_of, receive, send, value_from
 from devices.files.imports import place_trial
 from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
 from devices.files.refusal import FileRefusedError
@@ -472,8 +462,8 @@ def test_arrays_are_no_larger_than_a_file_can_be(shape: str) -> None:
 def test_a_refusal_has_only_plain_names_in_its_braces(what: str) -> None:
     reported = {"where": "w", "what": what, "remedy": "Do", "values": {"a": "1"}}
     with pytest.raises(BrokenAnswerError):
-        refusal_from(reported)
-    assert str(refusal_from({**reported, "what": "is {a}"})) == "w: is 1. Do."
+        value_from(FileRefusedError, reported)
+    assert str(value_from(FileRefusedError, {**reported, "what": "is {a}"})) == "w: is 1. Do."
 
 
 @pytest.mark.parametrize(
@@ -487,20 +477,27 @@ def test_a_refusal_has_only_plain_names_in_its_braces(what: str) -> None:
         {"unknown": {"a": ["\ud800"] * 3}},
         {"unknown": []},
         {"gyr_rad_s": None},
+        {"is_rate_derived": 1},
+        {"shape": [3]},
     ],
 )
 def test_a_block_of_another_shape_is_no_block(change: dict[str, object]) -> None:
     arrays: list[Array] = []
-    reported = details_of_block(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
-    assert block_from(reported, arrays).sensor == "a"
+    reported = details_of(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
+    assert value_from(ImuBlock, reported, arrays).sensor == "a"
     with pytest.raises(BrokenAnswerError):
-        block_from(reported | change, arrays)
+        value_from(ImuBlock, reported | change, arrays)
+
+
+FINDINGS = tuple[Finding, ...]
 
 
 def test_a_finding_of_another_shape_is_no_finding() -> None:
     findings = (Finding("key", Severity.INFO, "here", {"count": 1, "name": "x"}),)
-    assert findings_from(details_of_findings(findings)) == findings
+    assert value_from(FINDINGS, details_of(findings, [])) == findings
     with pytest.raises(BrokenAnswerError):
-        findings_from([{"key": "a", "severity": "loud", "where": "", "numbers": {}}])
+        value_from(FINDINGS, [{"key": "a", "severity": "loud", "where": "", "numbers": {}}])
     with pytest.raises(BrokenAnswerError):
-        findings_from([{"key": "a", "severity": "info", "where": "", "numbers": 3}])
+        value_from(FINDINGS, [{"key": "a", "severity": "info", "where": "", "numbers": 3}])
+    with pytest.raises(BrokenAnswerError):
+        value_from(FINDINGS, {"key": "a"})

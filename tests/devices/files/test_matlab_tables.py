@@ -22,7 +22,7 @@ from devices.files.formats import recognised
 from devices.files.matlab_tables import matlab_trial
 from devices.files.matlab_variables import ClosedObject, read_matlab
 from devices.files.refusal import FileRefusedError
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 ROWS = 300
 TIME_S = np.arange(ROWS) / 100.0
@@ -163,9 +163,7 @@ def test_two_walks_in_one_file_stay_apart(tmp_path: Path) -> None:
 
 def test_units_are_held_to_their_size_and_asked_for(tmp_path: Path) -> None:
     def refusal(variables: Mapping[str, Any]) -> str:
-        with pytest.raises(FileRefusedError) as caught:
-            matlab_trial([written(tmp_path / "a.mat", variables)])
-        return str(caught.value)
+        return refused(matlab_trial, [written(tmp_path / "a.mat", variables)])
 
     assert "is labelled m/s2, but its median of 1.01 matches gravity in g" in refusal(
         {"time_s": TIME_S, "acc": ACC / 9.8, "acc_unit": "m/s^2", "gyr": GYR}

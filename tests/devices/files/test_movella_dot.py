@@ -14,9 +14,8 @@ from devices.files import spreadsheets
 from devices.files.formats import recognised
 from devices.files.gathering import gather
 from devices.files.movella_dot import movella_dot_trial
-from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 HZ, STEP = 60.0, 16667  # of its app: microseconds
 AXIS = np.array([0.6, 0.0, 0.8])  # about which the sensor swings, in its own axes
@@ -69,6 +68,17 @@ def dot(
     return path
 
 
+def as_workbook(text: Path, path: Path) -> openpyxl.Workbook:
+    """The same cells as a spreadsheet."""
+    book = openpyxl.Workbook()
+    assert book.active is not None
+    for line in text.read_text(encoding="utf-8").splitlines():
+        cells = line.split(",")
+        book.active.append([float(cell) if cell.replace(".", "", 1).lstrip("-").isdigit() else cell for cell in cells])
+    book.save(path)
+    return book
+
+
 def block_of(path: Path, rate_hz: float | None = None) -> ImuBlock:
     return import_with(movella_dot_trial, [path], {Site.LEFT_THIGH: path.name}, "walk 1", rate_hz).imu[Site.LEFT_THIGH]
 
@@ -78,10 +88,7 @@ def keys(trial: ImportedTrial) -> list[list[str]]:
 
 
 def refusal(path: Path, rate_hz: float | None = None) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        movella_dot_trial([path], rate_hz)
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(movella_dot_trial, [path], rate_hz)
 
 
 def truth() -> tuple[FloatArray, FloatArray]:
@@ -144,18 +151,13 @@ def test_the_columns_of_the_sdk_count_tenths_of_a_millisecond(tmp_path: Path) ->
 
 def test_an_excel_file_holds_the_same(tmp_path: Path) -> None:
     text = dot(tmp_path / "a.csv", "Quat", "Acc", "Gyr")
-    book = openpyxl.Workbook()
-    sheet = book.active
-    assert sheet is not None
-    for line in text.read_text(encoding="utf-8").splitlines():
-        cells = line.split(",")
-        sheet.append([float(cell) if cell.replace(".", "", 1).lstrip("-").isdigit() else cell for cell in cells])
-    book.save(tmp_path / "a.xlsx")
+    book = as_workbook(text, tmp_path / "a.xlsx")
     assert recognised([tmp_path / "a.xlsx"]) == "movella-dot"
     one, other = block_of(text), block_of(tmp_path / "a.xlsx")
     np.testing.assert_array_equal(one.gyr_rad_s, other.gyr_rad_s)
     np.testing.assert_array_equal(one.time_s, other.time_s)
-    sheet.cell(20, 5).value = "moved"
+    assert book.active is not None
+    book.active.cell(20, 5).value = "moved"
     book.save(tmp_path / "b.xlsx")
     assert 'b.xlsx, row 20: "moved" is not a number' in refusal(tmp_path / "b.xlsx")
 

@@ -55,14 +55,15 @@ def written(
     lost: int = -1,
     force_every: int = 1,
     scale: float = 1.0,
+    count: int = COUNT,
 ) -> Path:
     """A swinging sensor's messages with items of these kinds, written without the reader's help.
 
     `force_every`: only every so-manieth message has the acceleration, multiplied by `scale`.
     """
-    swing = swinging_sensor(COUNT, HZ)
+    swing = swinging_sensor(count, HZ)
     data = message(Mid.DEVICE_ID + 1, bytes.fromhex("0123ABCD"))
-    for k in range(COUNT):
+    for k in range(count):
         if k == lost:
             continue
         q = swing.q_earth_from_sensor[k]

@@ -13,7 +13,7 @@ from devices.files.mvnx import mvnx_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.site_names import site_of_name
 from tests.swinging_sensor import SwingingSensor, swinging_sensor
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 NAMES = ("LeftUpperLeg", "LeftLowerLeg")
 POSE = '<frame time="0" index="" tc="" ms="0" type="npose"><orientation>1 0 0 0</orientation></frame>'
@@ -67,10 +67,7 @@ def mvnx(
 
 
 def refusal(path: Path, rate_hz: float | None = None) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        mvnx_trial([path], rate_hz)
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(mvnx_trial, [path], rate_hz)
 
 
 def test_free_acceleration_and_orientation_become_motion_in_sensor_axes(tmp_path: Path) -> None:

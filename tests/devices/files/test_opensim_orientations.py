@@ -14,10 +14,9 @@ from core.findings import Severity
 from core.session import Recording, RecordingKind, Session
 from devices.files.formats import format_of
 from devices.files.opensim_orientations import opensim_trial
-from devices.files.refusal import FileRefusedError
 from devices.files.site_names import site_of_name
 from tests.swinging_sensor import SwingingSensor, swinging_sensor
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 HEAD = ["DataRate=100.000000", "DataType=Quaternion", "version=3", "OpenSimVersion=4.4-2022-07-23", "endheader"]
 NAMES = ("femur_l_imu", "tibia_l_imu")
@@ -40,10 +39,7 @@ def edited(path: Path, old: str, new: str) -> Path:
 
 
 def refusal(path: Path) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        opensim_trial([path])
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(opensim_trial, [path])
 
 
 def test_orientations_become_rates_with_gravity_for_acceleration(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from devices.files import session_folder, site_files
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.site_files import NUMERIC
+from tests.trials_of_files import refused
 
 COLUMNS = "time_s,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,gyr_x_rad_s,gyr_y_rad_s,gyr_z_rad_s"
 ROWS = ["0.0,0.1,0.2,9.8,0.01,0.02,0.03", "0.01,0.1,0.2,9.8,0.01,0.02,0.03", "0.02,0.1,0.2,9.8,0.01,0.02,0.03"]
@@ -47,10 +48,7 @@ def thigh(folder: Path) -> ImuBlock:
 
 
 def refusal(folder: Path) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        read_session(folder)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
+    return refused(read_session, folder)
 
 
 def keys(session: Session) -> list[tuple[str, str, object]]:

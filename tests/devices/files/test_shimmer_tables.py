@@ -33,6 +33,7 @@ def written(
     later_ms: float = 0.0,
     lost: int = -1,
     kind: str = "CAL",
+    count: int = COUNT,
 ) -> Path:
     names, reported = [], []
     scale = 9.80665 if (units or {}).get("Accel_WR") == "g" else 1.0
@@ -43,7 +44,7 @@ def written(
             reported += [(units or {}).get(what, unit)] * len(axes)
     lines = [f'"sep={delimiter}"'] if has_sep else []
     lines += [delimiter.join([*names, ""]), delimiter.join([*reported, ""])]
-    for k in range(COUNT):
+    for k in range(count):
         if k == lost:
             continue
         cells: list[str] = []

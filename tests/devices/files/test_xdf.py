@@ -19,9 +19,9 @@ from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
 from devices.files.xdf import straight_times, xdf_trial
-from devices.simulation.walker import simulate
 from devices.simulation.walker_body import Walk, WalkerSettings
-from tests.trials_of_files import import_with
+from tests.simulated import session_of
+from tests.trials_of_files import import_with, refused
 
 Numbers = NDArray[np.float64]
 ROWS, RATE_HZ, START_S = 2000, 100.0, 4321.0
@@ -224,9 +224,7 @@ def test_a_clock_that_nobody_measured_is_reported(tmp_path: Path) -> None:
 
 def test_what_senders_do_not_show_is_asked_for(tmp_path: Path) -> None:
     def refusal(*streams: SentStream) -> str:
-        with pytest.raises(FileRefusedError) as caught:
-            xdf_trial([recorded(tmp_path / "a.xdf", *streams)])
-        return str(caught.value)
+        return refused(xdf_trial, [recorded(tmp_path / "a.xdf", *streams)])
 
     parts = [
         SentStream("force", motion()[:, :3], labels=LABELS[:3], units=UNITS[:3]),
@@ -252,7 +250,7 @@ def test_a_simulated_walk_comes_back_as_it_was_sent(tmp_path: Path) -> None:
     """Three sensors of one leg that lose samples, each on the clock of its own sender."""
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     settings = WalkerSettings(seed=3, recordings=(Walk(strides=8),), sites=sites, loss_fraction=0.02)
-    walk = simulate(settings).session.recordings[0].imu
+    walk = session_of(settings).recordings[0].imu
     assert max(map(len, walk.values())) <= ROWS
     streams = []
     for number, site in enumerate(sites):

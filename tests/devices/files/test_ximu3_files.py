@@ -10,6 +10,7 @@ from devices.files.formats import format_of
 from devices.files.gathering import gather
 from devices.files.refusal import FileRefusedError
 from devices.files.ximu3_files import ximu3_trial
+from tests.trials_of_files import refused
 
 COUNT, HZ = 200, 100
 HEAD = (
@@ -22,18 +23,18 @@ def motion(number: int) -> tuple[float, ...]:
     return 0.5 * number, -10.0, 20.0, 0.25, -0.5, 1.0 + 0.001 * number
 
 
-def kept(path: Path, *, is_binary: bool = True, lost: int = -1) -> Path:
+def kept(path: Path, *, is_binary: bool = True, lost: int = -1, count: int = COUNT) -> Path:
     voice = Ximu3Voice("0123ABCD", motion, rate_hz=HZ, is_binary=is_binary)
-    path.write_bytes(b"\n" + b"".join(voice.sample(k) for k in range(COUNT) if k != lost))
+    path.write_bytes(b"\n" + b"".join(voice.sample(k) for k in range(count) if k != lost))
     return path
 
 
-def converted(folder: Path, begin_us: int = 5_000_000, has_quaternion: bool = False) -> Path:
-    folder.mkdir(parents=True)
-    rows = [f"{begin_us + 10_000 * k},{','.join(map(str, motion(k)))}" for k in range(COUNT)]
+def converted(folder: Path, begin_us: int = 5_000_000, has_quaternion: bool = False, count: int = COUNT) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [f"{begin_us + 10_000 * k},{','.join(map(str, motion(k)))}" for k in range(count)]
     (folder / "Inertial.csv").write_text("\n".join([HEAD, *rows, ""]), encoding="utf-8")
     if has_quaternion:
-        turns = [f"{begin_us + 20_000 * k},1.0,0.0,0.0,0.0" for k in range(COUNT // 2)]
+        turns = [f"{begin_us + 20_000 * k},1.0,0.0,0.0,0.0" for k in range(count // 2)]
         (folder / "Quaternion.csv").write_text("\n".join(["Timestamp (us),W,X,Y,Z", *turns, ""]), encoding="utf-8")
     return folder
 
@@ -112,9 +113,7 @@ def test_other_units_than_the_heads_say_are_refused(tmp_path: Path) -> None:
         scales = (1.0, *[gyr] * 3, *[acc] * 3)
         lines = [",".join(repr(float(cell) * scale) for cell, scale in zip(row, scales, strict=True)) for row in rows]
         inertial.write_text("\n".join([HEAD, *lines, ""]), encoding="utf-8")
-        with pytest.raises(FileRefusedError) as refused:
-            ximu3_trial([folder])
-        return str(refused.value)
+        return refused(ximu3_trial, [folder])
 
     assert 'left_shank: the median acceleration of "left_shank" is 11' in refusal(1.0, 9.80665)
     assert "beyond the range of any sensor. Export the file again in deg/s" in refusal(1000.0, 1.0)

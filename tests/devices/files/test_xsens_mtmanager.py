@@ -17,7 +17,7 @@ from devices.files.imports import ImportedFiles
 from devices.files.orientation_rates import derive_rates
 from devices.files.refusal import FileRefusedError
 from devices.files.xsens_mtmanager import MtFile, mtmanager_trial, read_mtmanager
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 FindData = Callable[[str], Path]
 FOLDER = "vendor_exports/xsens_mtmanager"
@@ -40,10 +40,7 @@ def still(counters: list[int]) -> list[list[float]]:
 
 
 def refusal(path: Path) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        read_mtmanager(path)
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(read_mtmanager, path)
 
 
 def import_two(one: Path, other: Path, rate_hz: float | None = None) -> ImportedFiles:

@@ -207,6 +207,7 @@ def test_without_dask_the_refusal_names_what_brings_it(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
+    monkeypatch.delitem(sys.modules, "app.cohort.batch.cluster", raising=False)
     assert main(["batch", str(place / "in"), "--out", str(place / "out"), "--dask", "tcp://127.0.0.1:1"]) == 2
     assert refusal(capsys).endswith("Install it with pip install .[cluster].")
 

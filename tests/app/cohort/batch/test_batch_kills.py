@@ -6,12 +6,13 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.cohort.batch import executors
-from app.cohort.batch.executors import of_a_cluster
+from app.cohort.batch import cluster
+from app.cohort.batch.cluster import of_a_cluster
 from app.cohort.batch.spread import ClusterLostError, finished
 from devices.files.refusal import FileRefusedError
 from tests.app.batch_material import results_in, write_swinging
 from tests.app.batch_stand_ins import StandIn, digest_of
+from tests.driver import Found
 from tests.safety import batch_kills
 
 pytestmark = [
@@ -22,16 +23,16 @@ pytestmark = [
 
 
 def test_stand_ins_are_equal_by_hash_and_each_is_done_once() -> None:
-    found = batch_kills.BatchKills()
+    found = Found()
     batch_kills.stand_ins(15_000, 5.0, 500, "serial,pool,dask", found)
-    assert found.faults == [], "\n".join(found.lines())
+    assert found.faults == [], found
 
 
 def test_a_hundred_sessions_are_equal_by_hash_with_their_table(tmp_path: Path) -> None:
-    found = batch_kills.BatchKills()
+    found = Found()
     batch_kills.sessions(tmp_path, 100, 5.0, "serial,pool,dask", found)
-    assert found.faults == [], "\n".join(found.lines())
-    assert found.kills["100 sessions, pool"] > 0
+    assert found.faults == [], found
+    assert found.count["workers killed of 100 sessions, pool"] > 0
 
 
 def test_the_command_gives_the_same_by_a_cluster_and_goes_on_there(
@@ -50,7 +51,7 @@ def test_the_command_gives_the_same_by_a_cluster_and_goes_on_there(
 
 
 def test_an_address_where_nothing_answers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executors, "ANSWER_S", 0.5)
+    monkeypatch.setattr(cluster, "ANSWER_S", 0.5)
     for address in ("tcp://127.0.0.1:1", "nonsense://127.0.0.1:1"):
         with pytest.raises(FileRefusedError, match="no scheduler of Dask answers"), of_a_cluster(address):
             pass
@@ -76,9 +77,9 @@ class NoWorkers:
 
 
 def test_a_cluster_without_workers_is_waited_for_and_then_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
-    counted = executors.ClusterSize(NoWorkers())
+    counted = cluster.ClusterSize(NoWorkers())
     assert counted() == 1
-    monkeypatch.setattr(executors, "COUNTED_S", 0.0)
-    monkeypatch.setattr(executors, "NOBODY_S", 0.0)
+    monkeypatch.setattr(cluster, "COUNTED_S", 0.0)
+    monkeypatch.setattr(cluster, "NOBODY_S", 0.0)
     with pytest.raises(ClusterLostError, match="no worker any more"):
         counted()

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from app.cohort.study.found_csv import MOST_ON_TERMINAL, aligned_lines, check_csv_place, csv_cell, csv_lines, write_csv
+from app.cohort.study.found_csv import MOST_ON_TERMINAL, aligned_lines, check_csv_place, csv_lines, write_csv
+from app.system.tables import csv_cell
 from devices.files.refusal import FileRefusedError
 
 

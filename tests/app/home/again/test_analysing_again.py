@@ -10,8 +10,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.cohort.batch.again import AgainResult, analyse_again
+from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.home.home import Home
 from app.storage.exchange import import_session
@@ -19,26 +20,23 @@ from app.storage.journal.disk import Room
 from app.storage.kept_analyses import algorithm
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary
+from app.system.progress import nobody
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
+from tests.simulated import session_of
 
 WAIT_MS = 60_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
-
-
 @pytest.fixture(scope="module")
 def walked() -> Session:
     recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
-    return simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    return session_of(WalkerSettings(seed=5, recordings=recordings))
 
 
 @pytest.fixture
@@ -47,13 +45,13 @@ def opened(tmp_path: Path, walked: Session) -> Iterator[OpenedLibrary]:
     folder = tmp_path / "opened"
     with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as library:
         for _ in range(2):
-            import_session(library, walked, silent, "DEMO-1", room=ANY_ROOM)
+            import_session(library, walked, nobody, "DEMO-1", room=ANY_ROOM)
         yield library
 
 
-def again(opened: OpenedLibrary, ids: tuple[UUID, ...], workers: int = 1) -> AgainResult:
+def again(opened: OpenedLibrary, ids: tuple[UUID, ...], workers: int = 1) -> SelectionResult[UUID]:
     with of_this_computer(workers) as those:
-        return analyse_again(ids, lambda one: session_to_analyse(opened, one), those, silent)
+        return analyse_again(ids, lambda one: session_to_analyse(opened, one), those, nobody)
 
 
 def ids_of(opened: OpenedLibrary) -> tuple[UUID, ...]:
@@ -75,7 +73,7 @@ def test_what_is_analysed_again_is_what_opening_the_session_would_compute(
         raise AssertionError("it was computed a second time")
 
     monkeypatch.setattr("app.wizard.resuming.analyse", computed)
-    _, analysis = read_analysed(opened, ids[0], silent)
+    _, analysis = read_analysed(opened, ids[0], nobody)
     assert analysis.recordings
 
 
@@ -140,14 +138,13 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_faile
     qtbot: QtBot, qapp: QApplication, tmp_path: Path
 ) -> None:
     """Of the fixture no samples were recorded: all fail, each for its reason."""
-    load_fonts()
     controller = LibraryController()
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         (tmp_path / "library").mkdir()
-        controller.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE)
+        controller.open(lambda holder: holder.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE))
     home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     home.page.panel.analyse_again.trigger()

@@ -17,10 +17,11 @@ from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
 from tests.app.home.home_library import WAIT_MS
 from tests.app.watchdog import Watchdog
+from tests.simulated import session_of
 
 
 @pytest.fixture
@@ -155,7 +156,7 @@ def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
     qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
-    session = simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    session = session_of(WalkerSettings(seed=5, recordings=recordings))
     kept: list[object] = []
 
     class Keeper(QObject):

@@ -208,6 +208,6 @@ def test_nothing_is_filled_in_but_what_the_files_say(qtbot: QtBot, home: Home, t
     """Not the code of the patient who is in sight."""
     home.page.patients.choose_line(home.page.patients.lines[0].id)
     qtbot.waitUntil(lambda: home.patients.patient is not None, timeout=WAIT_MS)
-    home.page.import_requested.emit()
+    home.page.empty.importing.clicked.emit()
     page = read(qtbot, home, monitors(tmp_path / "walk.csv", ("Left Thigh", "Left Shank")))
     assert (page.code.text, home.bar.primary.isEnabled()) == ("", False)

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home.login import recovery_key_sheet as key_sheet
 from app.home.login.recovery_key_sheet import KeySheet, paint_sheet, sheet
-from app.theme.current import load_fonts, set_scale
+from app.theme.current import set_scale
 from app.wording.dates import date
 
 KEY = "1234-5678-90AB-CDEF"
@@ -23,7 +23,6 @@ KEY = "1234-5678-90AB-CDEF"
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system's own dialog opens, not Qt's")
 def test_the_printers_properties_open_without_a_complaint_of_qt(qapp: QApplication, qtbot: QtBot) -> None:
     """Its drawn page takes a quarter of the font's size in points, of which a font in pixels has none."""
-    load_fonts()
     set_scale(1.0)
     window = QWidget()
     qtbot.addWidget(window)
@@ -65,7 +64,6 @@ def test_the_saved_sheet_states_whose_key_it_is_and_since_when(
 
 
 def test_the_printed_sheet_holds_all_of_it_on_one_page(qapp: QApplication, tmp_path: Path) -> None:
-    load_fonts()
     file = tmp_path / "key.pdf"
     words = sheet(
         KEY, Path("/a/long/way/to/the/folder/of/a/clinic's/library/of/recordings"), datetime.date(2026, 11, 26)

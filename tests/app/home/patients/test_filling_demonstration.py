@@ -14,7 +14,6 @@ from app.demonstration.patients import ReportedOfWalk, SimulatedPatient, Simulat
 from app.home.home import Home
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings
@@ -89,14 +88,13 @@ def home(
 ) -> Iterator[Home]:
     """In the demonstration's library of two patients, whose processes do nothing by themselves."""
     HELD.clear()
-    monkeypatch.setattr("app.cohort.batch.executors.ProcessExecutor", Held)
-    monkeypatch.setattr("app.cohort.batch.executors.processors", lambda: 2)
+    monkeypatch.setattr("app.home.patients.demonstration.ProcessExecutor", Held)
+    monkeypatch.setattr("app.home.patients.demonstration.processors", lambda: 2)
     monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: PATIENTS)
     monkeypatch.setattr(
-        "app.demonstration.recording.record_beside",
+        "app.home.patients.demonstration.record_beside",
         lambda required: replace(session, started=required.started.isoformat(timespec="seconds")),
     )
-    load_fonts()
     home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)

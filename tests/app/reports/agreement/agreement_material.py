@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from core.body import LEG_JOINTS, Joint
-from devices.simulation.walker import FreeMotion, SessionTruth, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SessionTruth, Standing, Walk, WalkerSettings
+from tests.simulated import simulation_of
 
 SETTINGS = WalkerSettings(
     seed=3,
@@ -16,7 +17,7 @@ PPM = 150e-6
 
 
 def made() -> tuple[object, SessionTruth]:
-    simulated = simulate(SETTINGS)
+    simulated = simulation_of(SETTINGS)
     return simulated.session, simulated.truth
 
 

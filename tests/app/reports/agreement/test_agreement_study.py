@@ -13,7 +13,6 @@ from app.reports.agreement.pictures import FIGURES, pictures_of
 from app.reports.agreement.printed import printed
 from app.reports.agreement.study import AgreementStudy, AngleKind, study_of
 from app.reports.agreement.tables import agreement_table, curve_table, summary_of
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.session import Patient, Session
@@ -23,6 +22,7 @@ from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
 from devices.simulation.walker import SessionTruth
 from tests.app.reports.agreement.agreement_material import PPM, made, rows_of, write_reference
+from tests.simulated import analysis_of
 
 TURNED = (Joint.RIGHT_KNEE,)
 
@@ -31,7 +31,7 @@ TURNED = (Joint.RIGHT_KNEE,)
 def simulated() -> tuple[Session, SessionTruth, Analysis]:
     session, truth = made()
     assert isinstance(session, Session)
-    return session, truth, analyse(session)
+    return session, truth, analysis_of(session)
 
 
 @pytest.fixture(scope="module")

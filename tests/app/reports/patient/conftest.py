@@ -6,48 +6,48 @@ from datetime import datetime, timedelta, timezone
 import pytest
 
 from app.summary.request import AnalysedVisit, ReportRequest
-from core.analysis import analyse
 from core.body import Side
 from core.session import RecordingKind
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
+from tests.simulated import analysis_of, session_of
 
 MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=timezone(timedelta(hours=1)))
 
 
 @pytest.fixture(scope="session")
 def demonstration() -> AnalysedVisit:
-    session = simulate(DEMONSTRATION).session
-    return AnalysedVisit(session, analyse(session))
+    session = session_of(DEMONSTRATION)
+    return AnalysedVisit(session, analysis_of(session))
 
 
 @pytest.fixture(scope="session")
 def one_leg() -> AnalysedVisit:
     """The demonstration's left leg; the right one wears no sensor."""
-    reported = simulate(DEMONSTRATION).session
+    reported = session_of(DEMONSTRATION)
     recordings = tuple(
         replace(r, imu={site: block for site, block in r.imu.items() if site.side is Side.LEFT})
         for r in reported.recordings
     )
     session = replace(reported, recordings=recordings)
-    return AnalysedVisit(session, analyse(session))
+    return AnalysedVisit(session, analysis_of(session))
 
 
 @pytest.fixture(scope="session")
 def alignments() -> AnalysedVisit:
     walks = tuple(Walk(name=f"walk {k}", strides=13, speed_m_s=speed) for k, speed in ((1, 1.05), (2, 1.15), (3, 1.2)))
     settings = replace(DEMONSTRATION, seed=7, prosthetic_side=Side.RIGHT)
-    reported = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
+    reported = session_of(replace(settings, recordings=(Standing(), FreeMotion(), *walks)))
     letters = iter("ABC")
     recorded = tuple(
         replace(r, condition=f"alignment {next(letters)}") if r.kind is RecordingKind.WALKING else r
         for r in reported.recordings
     )
     session = replace(reported, recordings=recorded, started="2026-11-20T09:42:00+01:00")
-    return AnalysedVisit(session, analyse(session))
+    return AnalysedVisit(session, analysis_of(session))
 
 
 @pytest.fixture
-def request_of_demonstration(demonstration: AnalysedVisit) -> ReportRequest:
+def demo(demonstration: AnalysedVisit) -> ReportRequest:
     return ReportRequest(demonstration, ("walk 1",), MADE_AT, "1.2.3")
 
 
@@ -57,5 +57,5 @@ def request_of_one_leg(one_leg: AnalysedVisit) -> ReportRequest:
 
 
 @pytest.fixture
-def request_of_alignments(alignments: AnalysedVisit) -> ReportRequest:
+def aligned(alignments: AnalysedVisit) -> ReportRequest:
     return ReportRequest(alignments, ("walk 1", "walk 2", "walk 3"), MADE_AT, "1.2.3")

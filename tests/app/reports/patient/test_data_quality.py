@@ -18,8 +18,8 @@ from tests.app.changed_analysis import recalibrated, walk_of, with_few_strides
 
 
 @pytest.fixture
-def visit(request_of_demonstration: ReportRequest) -> AnalysedVisit:
-    return request_of_demonstration.visit
+def visit(demo: ReportRequest) -> AnalysedVisit:
+    return demo.visit
 
 
 def facts(visit: AnalysedVisit, analysis: Analysis) -> Facts:

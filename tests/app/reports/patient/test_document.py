@@ -95,25 +95,25 @@ def test_every_font_is_embedded(report: bytes) -> None:
             assert "Inter" in str(font.FontName)
 
 
-def test_the_same_request_gives_the_same_bytes(request_of_demonstration: ReportRequest) -> None:
-    first = make_report(request_of_demonstration)
-    assert first == make_report(request_of_demonstration)
+def test_the_same_request_gives_the_same_bytes(demo: ReportRequest) -> None:
+    first = make_report(demo)
+    assert first == make_report(demo)
     assert str(Path(__file__).parents[4]).encode() not in first
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
 @pytest.mark.parametrize("language", ["en", "pseudo"])
 def test_page_one_stays_one_page(
-    request_of_alignments: ReportRequest, paper: str, language: str, request: pytest.FixtureRequest
+    aligned: ReportRequest, paper: str, language: str, request: pytest.FixtureRequest
 ) -> None:
     """Its fields two lines long, its box with three sentences, on either paper, in a language as long as German."""
     if language == "pseudo":
         request.getfixturevalue("pseudo_language")
-    visit = request_of_alignments.visit
+    visit = aligned.visit
     patient = replace(visit.session.patient, device="W" * 200, aids="two crutches", code="W" * 60)
     session = replace(visit.session, patient=patient, surface="corridor " * 40)
     required = replace(
-        request_of_alignments,
+        aligned,
         visit=AnalysedVisit(session, visit.analysis),
         paper=paper,
         operator="W" * 200,
@@ -141,31 +141,29 @@ def test_the_pages_stand_in_their_order(report: bytes) -> None:
         assert "Gaitwright 1.2.3" in page
 
 
-def test_one_walk_takes_four_pages(request_of_demonstration: ReportRequest) -> None:
-    assert len(texts(make_report(request_of_demonstration))) == 4
+def test_one_walk_takes_four_pages(demo: ReportRequest) -> None:
+    assert len(texts(make_report(demo))) == 4
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
 def test_the_comment_is_on_page_one_and_the_signature_on_the_page_of_the_method(
-    request_of_demonstration: ReportRequest, paper: str
+    demo: ReportRequest, paper: str
 ) -> None:
-    commented = replace(request_of_demonstration, paper=paper, comment="Walk again in May.", comment_by="M. Weber")
+    commented = replace(demo, paper=paper, comment="Walk again in May.", comment_by="M. Weber")
     pages = texts(make_report(commented))
     assert "Walk again in May." in pages[0]
     assert "M. Weber" in pages[0]
     assert "Signature" in pages[3]
     assert sum("Clinical comment" in page for page in pages) == 1
-    assert not any("Clinical comment" in page for page in texts(make_report(request_of_demonstration)))
+    assert not any("Clinical comment" in page for page in texts(make_report(demo)))
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
-def test_nothing_of_a_page_is_left_for_the_next(
-    request_of_alignments: ReportRequest, request_of_demonstration: ReportRequest, paper: str
-) -> None:
+def test_nothing_of_a_page_is_left_for_the_next(aligned: ReportRequest, demo: ReportRequest, paper: str) -> None:
     """Every page holds its heading and all that belongs to it: conditions or visits compared, peaks with windows."""
-    before = walked_under(request_of_alignments.visit, request_of_demonstration)
-    two_visits = replace(request_of_demonstration, earlier=before, paper=paper)
-    for required in (replace(request_of_alignments, paper=paper), two_visits):
+    before = walked_under(aligned.visit, demo)
+    two_visits = replace(demo, earlier=before, paper=paper)
+    for required in (replace(aligned, paper=paper), two_visits):
         pages = texts(make_report(required))
         assert len(pages) == 5
         assert "Where values are measured" in pages[1]
@@ -173,17 +171,17 @@ def test_nothing_of_a_page_is_left_for_the_next(
 
 
 @pytest.mark.usefixtures("pseudo_language")
-def test_what_explains_the_peaks_takes_no_page_of_its_own(request_of_demonstration: ReportRequest) -> None:
+def test_what_explains_the_peaks_takes_no_page_of_its_own(demo: ReportRequest) -> None:
     """A longer language makes the table longer: what explains it is then left away, not put behind it alone."""
-    assert len(texts(make_report(request_of_demonstration))) == 4
+    assert len(texts(make_report(demo))) == 4
 
 
-def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest) -> None:
-    assert "walk: C alignment C" in method_page(request_of_alignments)
-    assert "alignment C" in first_page(request_of_alignments)
-    two = replace(request_of_alignments, walks=("walk 2", "walk 3"))
+def test_a_walk_is_called_as_on_the_screen(aligned: ReportRequest) -> None:
+    assert "walk: C alignment C" in method_page(aligned)
+    assert "alignment C" in first_page(aligned)
+    two = replace(aligned, walks=("walk 2", "walk 3"))
     assert "Compared: B alignment B · C alignment C (shown: C)" in method_page(two)
-    visit = request_of_alignments.visit
+    visit = aligned.visit
     reported = visit.session.recordings
     alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in reported)
     same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
@@ -196,12 +194,12 @@ def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest)
 
 
 def test_page_one_states_what_differs_and_the_page_of_the_method_what_was_measured(
-    request_of_alignments: ReportRequest, request_of_one_leg: ReportRequest
+    aligned: ReportRequest, request_of_one_leg: ReportRequest
 ) -> None:
-    method = method_page(request_of_alignments)
+    method = method_page(aligned)
     assert "Knee and ankle of both legs · 6 motion sensors" in method
     assert "Compared: A alignment A · B alignment B · C alignment C (shown: C)" in method
-    first = first_page(request_of_alignments)
+    first = first_page(aligned)
     assert "Right ankle plantarflexes 9° at push-off, 17° less than the left." in first
     assert "95 of 100 healthy people differ by less." in first
     assert "prosthetic side: right · alignment C" in first
@@ -214,9 +212,9 @@ def test_page_one_states_what_differs_and_the_page_of_the_method_what_was_measur
 
 
 def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
-    request_of_alignments: ReportRequest, alignments: AnalysedVisit
+    aligned: ReportRequest, alignments: AnalysedVisit
 ) -> None:
-    page = texts(make_report(replace(request_of_alignments, earlier=alignments)))[4]
+    page = texts(make_report(replace(aligned, earlier=alignments)))[4]
     assert "Comparison of visits" in page
     assert "Two visits, sensors reattached" in page
     # 1.96 x sqrt(2) x hypot(1.2, 0.043 x 60)
@@ -224,7 +222,7 @@ def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
 
 
 def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
-    request_of_alignments: ReportRequest, alignments: AnalysedVisit
+    aligned: ReportRequest, alignments: AnalysedVisit
 ) -> None:
     """C of this visit is reported against C of the earlier one; where that has only A, against nothing."""
     recordings = alignments.session.recordings[:-2]  # up to alignment A
@@ -232,7 +230,7 @@ def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
         replace(alignments.session, recordings=recordings),
         replace(alignments.analysis, recordings=alignments.analysis.recordings[:-2]),
     )
-    request = replace(request_of_alignments, earlier=before)
+    request = replace(aligned, earlier=before)
     assert comparison_of(request) is None
     pages = texts(make_report(request))
     stated = "has no walk in this condition (alignment C), so it is not compared. Its conditions: alignment A."
@@ -253,9 +251,9 @@ def walked_under(visit: AnalysedVisit, request: ReportRequest) -> AnalysedVisit:
     )
 
 
-def test_a_long_comment_is_printed_whole(request_of_demonstration: ReportRequest) -> None:
+def test_a_long_comment_is_printed_whole(demo: ReportRequest) -> None:
     comment = "\n".join(f"Line {k} of what the clinician says." for k in range(150))
-    pages = texts(make_report(replace(request_of_demonstration, comment=comment)))
+    pages = texts(make_report(replace(demo, comment=comment)))
     assert len(pages) > 4
     assert any("Line 0 of" in page for page in pages)
     assert any("Line 149 of" in page for page in pages)
@@ -282,19 +280,16 @@ def test_a_look_again_is_as_if_it_were_the_first(alignments: AnalysedVisit) -> N
         before = pages
 
 
-def test_the_page_of_conditions_states_what_was_turned_and_against_which(request_of_alignments: ReportRequest) -> None:
-    visit = request_of_alignments.visit
+def test_the_page_of_conditions_states_what_was_turned_and_against_which(aligned: ReportRequest) -> None:
+    visit = aligned.visit
     changes = {
         "walk 2": AlignmentChange("alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.5),)),
         "walk 3": AlignmentChange("alignment B", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),)),
     }
     turned = tuple(replace(one, alignment=changes.get(one.name)) for one in visit.session.recordings)
-    reported = replace(
-        request_of_alignments, visit=AnalysedVisit(replace(visit.session, recordings=turned), visit.analysis)
-    )
+    reported = replace(aligned, visit=AnalysedVisit(replace(visit.session, recordings=turned), visit.analysis))
     without, page = (
-        re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(one))[-1].split()))
-        for one in (request_of_alignments, reported)
+        re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(one))[-1].split())) for one in (aligned, reported)
     )
     assert "Foot, anterior screw ½ turn out" in page
     assert "Pylon +3 mm" in page

@@ -16,12 +16,12 @@ from app.summary.request import AnalysedVisit, ReportRequest
 
 
 @pytest.fixture
-def report(request_of_demonstration: ReportRequest) -> bytes:
+def report(demo: ReportRequest) -> bytes:
     """The report of one walk of somebody else than the fixtures' patient."""
-    visit = request_of_demonstration.visit
+    visit = demo.visit
     patient = replace(visit.session.patient, code="P-0815")
     session = replace(visit.session, patient=patient, started="2026-03-04T10:00:00+01:00")
-    required = replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis))
+    required = replace(demo, visit=AnalysedVisit(session, visit.analysis))
     return make_report(required)
 
 

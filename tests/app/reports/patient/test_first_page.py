@@ -54,10 +54,8 @@ def returned(request: ReportRequest, more_deg: float) -> ReportRequest:
     return replace(request, course=course, thin=thin)
 
 
-def test_a_first_visit_has_no_change_and_a_return_has_its_change_day_and_thin_line(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    first, again = page(request_of_demonstration), page(returned(request_of_demonstration, -20.0))
+def test_a_first_visit_has_no_change_and_a_return_has_its_change_day_and_thin_line(demo: ReportRequest) -> None:
+    first, again = page(demo), page(returned(demo, -20.0))
     assert first["summary"]["first"].startswith("Left and right are similar: knee")
     assert [tile["change"] for tile in first["tiles"]] == ["First visit"] * 4
     assert first["table"]["since"] == ""
@@ -74,8 +72,8 @@ def test_a_first_visit_has_no_change_and_a_return_has_its_change_day_and_thin_li
     assert "7 Oct" in again["charts"][0][0]["picture"]["svg"]
 
 
-def test_the_thin_line_is_the_visit_that_the_headline_names(request_of_demonstration: ReportRequest) -> None:
-    request = returned(request_of_demonstration, -20.0)
+def test_the_thin_line_is_the_visit_that_the_headline_names(demo: ReportRequest) -> None:
+    request = returned(demo, -20.0)
     session, analysis = request.visit.session, request.visit.analysis
     before = AnalysedVisit(replace(session, started=f"{LAST.isoformat()}T09:00:00"), analysis)
     other = AnalysedVisit(replace(session, started="2026-09-02T09:00:00"), analysis)
@@ -83,13 +81,11 @@ def test_the_thin_line_is_the_visit_that_the_headline_names(request_of_demonstra
     assert line is not None
     assert (line.day, line.short_name) == (LAST, "7 Oct")
     assert thin_part(facts_of(request), [other]) is None
-    assert thin_part(facts_of(request_of_demonstration), [other, before]) is None
+    assert thin_part(facts_of(demo), [other, before]) is None
 
 
-def test_page_one_has_what_changed_over_the_course_also_without_its_own_page(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    request = returned(request_of_demonstration, -20.0)
+def test_page_one_has_what_changed_over_the_course_also_without_its_own_page(demo: ReportRequest) -> None:
+    request = returned(demo, -20.0)
     with_page, without = (
         report_data(replace(request, thin=None, has_course_page=has_page)) for has_page in (True, False)
     )
@@ -97,10 +93,10 @@ def test_page_one_has_what_changed_over_the_course_also_without_its_own_page(
     assert with_page["first_page"] == without["first_page"]
 
 
-def test_the_amber_box_comes_only_where_something_is_not_good(request_of_demonstration: ReportRequest) -> None:
+def test_the_amber_box_comes_only_where_something_is_not_good(demo: ReportRequest) -> None:
     good, doubtful = (
-        page(request_of_demonstration),
-        page(changed(request_of_demonstration, axis_sd_rad=math.radians(9.8))),
+        page(demo),
+        page(changed(demo, axis_sd_rad=math.radians(9.8))),
     )
     assert good["caution"] is None
     assert good["quality"][0] == "Data quality: good."
@@ -109,10 +105,8 @@ def test_the_amber_box_comes_only_where_something_is_not_good(request_of_demonst
     assert doubtful["quality"][0] == "Data quality: caution."
 
 
-def test_a_knee_that_is_not_reported_has_no_figure_and_a_box_in_place_of_its_curve(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    found = page(changed(request_of_demonstration, axis_sd_rad=math.radians(9.8)))
+def test_a_knee_that_is_not_reported_has_no_figure_and_a_box_in_place_of_its_curve(demo: ReportRequest) -> None:
+    found = page(changed(demo, axis_sd_rad=math.radians(9.8)))
     knee = found["tiles"][2]
     assert [value["text"] for value in knee["values"]] == ["–", "62°"]
     assert knee["change"] == "First visit"
@@ -133,18 +127,18 @@ def test_one_leg_has_its_tiles_curves_and_values_only(request_of_one_leg: Report
     assert not any(">R " in chart["picture"]["svg"] for chart in found["charts"][0])
 
 
-def test_without_a_mean_there_is_no_table(request_of_demonstration: ReportRequest) -> None:
-    visit = request_of_demonstration.visit
+def test_without_a_mean_there_is_no_table(demo: ReportRequest) -> None:
+    visit = demo.visit
     few = with_few_strides(visit.analysis, left=2, right=2)
-    assert page(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, few)))["table"] is None
-    assert len(page(request_of_demonstration)["table"]["rows"]) == 5
+    assert page(replace(demo, visit=AnalysedVisit(visit.session, few)))["table"] is None
+    assert len(page(demo)["table"]["rows"]) == 5
 
 
 def test_a_comment_is_beside_the_summary_with_who_wrote_it_and_a_long_one_states_where_it_goes_on(
-    request_of_demonstration: ReportRequest,
+    demo: ReportRequest,
 ) -> None:
-    assert page(request_of_demonstration)["comment"] is None
-    commented = replace(request_of_demonstration, comment="Walks well.", comment_by="M. Weber, physiotherapist")
+    assert page(demo)["comment"] is None
+    commented = replace(demo, comment="Walks well.", comment_by="M. Weber, physiotherapist")
     found = page(commented)["comment"]
     assert (found["lines"], plain(found["by"]), found["is_long"], found["rest"]) == (
         ["Walks well."],
@@ -157,18 +151,18 @@ def test_a_comment_is_beside_the_summary_with_who_wrote_it_and_a_long_one_states
     assert page(replace(commented, comment="Walks well today. " * 40))["comment"]["rest"]
 
 
-def test_who_was_measured_and_how_is_beside_the_code(request_of_demonstration: ReportRequest) -> None:
-    session = request_of_demonstration.visit.session
+def test_who_was_measured_and_how_is_beside_the_code(demo: ReportRequest) -> None:
+    session = demo.visit.session
     patient = Patient(code="P-1", birth_year=1961, sex="female", affected_side="left", device="left knee replaced")
     recordings = tuple(replace(one, condition="shoes") for one in session.recordings)
     known = replace(session, patient=patient, recordings=recordings)
-    visit = AnalysedVisit(known, request_of_demonstration.visit.analysis)
-    stated = page(replace(request_of_demonstration, visit=visit))["who"]
+    visit = AnalysedVisit(known, demo.visit.analysis)
+    stated = page(replace(demo, visit=visit))["who"]
     assert plain(stated) == "Woman · born 1961 · affected side: left · left knee replaced · shoes"
 
 
-def test_no_letter_of_page_one_is_smaller_than_nine_points(request_of_demonstration: ReportRequest) -> None:
-    request = replace(returned(request_of_demonstration, -20.0), comment="Walks well.", comment_by="M. Weber")
+def test_no_letter_of_page_one_is_smaller_than_nine_points(demo: ReportRequest) -> None:
+    request = replace(returned(demo, -20.0), comment="Walks well.", comment_by="M. Weber")
     sizes: list[float] = []
 
     def seen(text: str, matrix: list[float], transform: list[float], _font: object, size: float) -> None:

@@ -180,12 +180,12 @@ def test_the_pelvis_has_its_table_and_the_tilt_its_reason() -> None:
     assert "1 turn." in stated(blocks)
 
 
-def test_without_a_pelvis_nothing_of_it_is_printed(request_of_demonstration: ReportRequest) -> None:
-    visit = request_of_demonstration.visit
+def test_without_a_pelvis_nothing_of_it_is_printed(demo: ReportRequest) -> None:
+    visit = demo.visit
     facts = Facts(visit, walk_of(visit.analysis))
     assert hips_table(facts) == pelvis_table(facts) == []
     assert "hip" not in stated(peaks_table(facts)).casefold()
-    assert "hip" not in stated(first_page(request_of_demonstration, facts, None)).casefold()
+    assert "hip" not in stated(first_page(demo, facts, None)).casefold()
 
 
 def test_hips_are_a_row_on_page_one_and_curves_on_page_two_and_a_not_reported_one_states_why() -> None:

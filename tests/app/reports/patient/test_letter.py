@@ -71,29 +71,25 @@ def knee_goal(value: float) -> Goal:
     return Goal(KNEE, GoalOf.LEFT, value, AGREED)
 
 
-def test_a_change_beyond_the_error_is_called_larger_than_it_and_one_within_may_be_error(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    large = words(letter_data(of(request_of_demonstration, first_deg=31.0), "en"))
+def test_a_change_beyond_the_error_is_called_larger_than_it_and_one_within_may_be_error(demo: ReportRequest) -> None:
+    large = words(letter_data(of(demo, first_deg=31.0), "en"))
     assert f"Your left knee now bends {KNEE_DEG} degrees. In September it was 31 degrees." in large
     assert "The change is larger than our measuring error." in large
-    small = words(letter_data(of(request_of_demonstration, first_deg=57.0), "en"))
+    small = words(letter_data(of(demo, first_deg=57.0), "en"))
     assert "The change may be measuring error." in small
     assert "larger than" not in small
 
 
-def test_a_first_visit_compares_with_nothing(request_of_demonstration: ReportRequest) -> None:
-    stated = words(letter_data(of(request_of_demonstration), "en"))
+def test_a_first_visit_compares_with_nothing(demo: ReportRequest) -> None:
+    stated = words(letter_data(of(demo), "en"))
     assert f"Your left knee bends {KNEE_DEG} degrees. This is your first measurement." in stated
     assert not re.search(r"\bnow\b|\bchange\b|\bthan\b", stated)
 
 
-def test_a_visit_of_the_same_month_is_named_by_its_day_and_one_of_another_year_by_its_year(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    same = letter_data(of(request_of_demonstration, first_deg=31.0, day=datetime.date(2026, 11, 3)), "en")
+def test_a_visit_of_the_same_month_is_named_by_its_day_and_one_of_another_year_by_its_year(demo: ReportRequest) -> None:
+    same = letter_data(of(demo, first_deg=31.0, day=datetime.date(2026, 11, 3)), "en")
     assert "On 3 November it was 31 degrees." in words(same)
-    other = letter_data(of(request_of_demonstration, first_deg=31.0, day=datetime.date(2025, 11, 3)), "en")
+    other = letter_data(of(demo, first_deg=31.0, day=datetime.date(2025, 11, 3)), "en")
     assert "In November 2025 it was 31 degrees." in words(other)
 
 
@@ -106,18 +102,16 @@ def test_a_visit_of_the_same_month_is_named_by_its_day_and_one_of_another_year_b
         (80.0, "19 degrees are left to the goal we agreed."),
     ],
 )
-def test_a_goal_is_reached_or_missed_only_by_more_than_the_error(
-    request_of_demonstration: ReportRequest, goal: float, stated: str
-) -> None:
-    data = letter_data(of(request_of_demonstration, knee_goal(goal)), "en")
+def test_a_goal_is_reached_or_missed_only_by_more_than_the_error(demo: ReportRequest, goal: float, stated: str) -> None:
+    data = letter_data(of(demo, knee_goal(goal)), "en")
     others = {"You have reached the goal", "You are about at your goal", "are left to the goal"}
     assert stated in words(data)
     assert sum(other in words(data) for other in others) == 1
     assert data["bar_title"] == f"Your goal: {goal:g} degrees"
 
 
-def test_without_a_goal_there_is_no_tick_and_no_word_of_one(request_of_demonstration: ReportRequest) -> None:
-    bars = [letter_data(of(request_of_demonstration, *goals), "en") for goals in ((), (knee_goal(80.0),))]
+def test_without_a_goal_there_is_no_tick_and_no_word_of_one(demo: ReportRequest) -> None:
+    bars = [letter_data(of(demo, *goals), "en") for goals in ((), (knee_goal(80.0),))]
     without, with_goal = (str(data["bar"]) for data in bars)
     assert "Goal" not in without
     assert "goal" not in words(bars[0])
@@ -126,17 +120,15 @@ def test_without_a_goal_there_is_no_tick_and_no_word_of_one(request_of_demonstra
 
 @pytest.mark.parametrize("sd_deg", [8.0, 11.0])
 def test_a_knee_that_is_not_read_without_care_leaves_the_speed_as_the_number(
-    request_of_demonstration: ReportRequest, sd_deg: float
+    demo: ReportRequest, sd_deg: float
 ) -> None:
-    stated = words(letter_data(of(request_of_demonstration, knee_goal(80.0), first_deg=31.0, knee_sd_deg=sd_deg), "en"))
+    stated = words(letter_data(of(demo, knee_goal(80.0), first_deg=31.0, knee_sd_deg=sd_deg), "en"))
     assert "You now walk 1.2 metres in a second. In September it was 0.8 metres in a second." in stated
     assert "degrees" not in stated
 
 
-def test_a_first_visit_whose_knee_was_not_reported_is_not_compared_with(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    request = of(request_of_demonstration, first_deg=31.0)
+def test_a_first_visit_whose_knee_was_not_reported_is_not_compared_with(demo: ReportRequest) -> None:
+    request = of(demo, first_deg=31.0)
     reported = unsure(Joint.LEFT_KNEE)
     before = course((walked(knee_deg=31.0, speed_m_s=0.8, reported=reported), ""), reported=reported)
     stated = words(
@@ -147,8 +139,8 @@ def test_a_first_visit_whose_knee_was_not_reported_is_not_compared_with(
     assert "first measurement" not in stated
 
 
-def test_where_nothing_is_read_without_care_the_letter_has_no_number(request_of_demonstration: ReportRequest) -> None:
-    request = of(request_of_demonstration, knee_goal(80.0), knee_sd_deg=11.0)
+def test_where_nothing_is_read_without_care_the_letter_has_no_number(demo: ReportRequest) -> None:
+    request = of(demo, knee_goal(80.0), knee_sd_deg=11.0)
     few = with_few_strides(request.visit.analysis, left=2, right=2)
     data = letter_data(replace(request, visit=replace(request.visit, analysis=few)), "en")
     assert data["picture"] is None
@@ -156,9 +148,9 @@ def test_where_nothing_is_read_without_care_the_letter_has_no_number(request_of_
     assert not re.search(r"\d", words(data))
 
 
-def test_the_speed_beside_the_knee_has_no_number_of_its_own(request_of_demonstration: ReportRequest) -> None:
+def test_the_speed_beside_the_knee_has_no_number_of_its_own(demo: ReportRequest) -> None:
     goal = Goal(SPEED, GoalOf.WALK, 0.9, AGREED)
-    texts = letter_data(of(request_of_demonstration, goal, first_deg=31.0), "en")["texts"]
+    texts = letter_data(of(demo, goal, first_deg=31.0), "en")["texts"]
     assert texts[1] == [  # type: ignore[index]  # it is a list of pairs
         "Your walking speed",
         "You also walk faster than in September. You have reached your goal for walking speed.",
@@ -176,8 +168,8 @@ def _every(request: ReportRequest) -> Iterator[ReportRequest]:
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_every_sentence_is_short_and_judges_nobody(request_of_demonstration: ReportRequest, language: str) -> None:
-    for request in _every(request_of_demonstration):
+def test_every_sentence_is_short_and_judges_nobody(demo: ReportRequest, language: str) -> None:
+    for request in _every(demo):
         stated = words(letter_data(request, language))
         for sentence in re.split(r"(?<=[.?!])\s(?!\w+ \d{4})", stated):
             assert len(sentence.split()) < MOST_WORDS, sentence
@@ -194,22 +186,20 @@ def test_every_message_is_short_in_every_language() -> None:
             assert len(sentence.split()) < MOST_WORDS, sentence
 
 
-def test_german_is_stated_in_german_and_with_its_comma(request_of_demonstration: ReportRequest) -> None:
-    data = letter_data(of(request_of_demonstration, first_deg=31.0, knee_sd_deg=11.0), "de")
+def test_german_is_stated_in_german_and_with_its_comma(demo: ReportRequest) -> None:
+    data = letter_data(of(demo, first_deg=31.0, knee_sd_deg=11.0), "de")
     assert "Sie gehen jetzt 1,2 Meter in einer Sekunde. Im September waren es 0,8 Meter in einer Sekunde." in words(
         data
     )
-    knee = words(letter_data(of(request_of_demonstration, knee_goal(80.0), first_deg=31.0), "de"))
+    knee = words(letter_data(of(demo, knee_goal(80.0), first_deg=31.0), "de"))
     assert f"Ihr linkes Knie beugt sich jetzt um {KNEE_DEG} Grad. Im September waren es 31 Grad." in knee
     assert "19 Grad fehlen bis zum vereinbarten Ziel." in knee
     assert not re.search(r"\b(the|your|bends|degrees)\b", knee)
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
-def test_the_letter_is_one_page_and_the_report_has_none_of_it(
-    request_of_demonstration: ReportRequest, paper: str
-) -> None:
-    request = replace(of(request_of_demonstration, knee_goal(80.0), first_deg=31.0), paper=paper)
+def test_the_letter_is_one_page_and_the_report_has_none_of_it(demo: ReportRequest, paper: str) -> None:
+    request = replace(of(demo, knee_goal(80.0), first_deg=31.0), paper=paper)
     pages = pypdf.PdfReader(io.BytesIO(make_letter(request, "en"))).pages
     assert len(pages) == 1
     text = " ".join(pages[0].extract_text().split())

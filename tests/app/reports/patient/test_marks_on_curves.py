@@ -18,8 +18,8 @@ from tests.app.results.test_result_page import GROWN, at_speed
 
 
 @pytest.fixture
-def analysis(request_of_demonstration: ReportRequest) -> Analysis:
-    return request_of_demonstration.visit.analysis
+def analysis(demo: ReportRequest) -> Analysis:
+    return demo.visit.analysis
 
 
 def facts(request: ReportRequest, analysis: Analysis) -> Facts:
@@ -35,10 +35,8 @@ def moved(analysis: Analysis, joint: Joint, by_rad: FloatArray | float) -> Analy
     return rewalked(analysis, gait=gait)
 
 
-def test_peaks_have_the_values_of_the_tables_and_lie_on_their_curves(
-    request_of_demonstration: ReportRequest, analysis: Analysis
-) -> None:
-    found = facts(request_of_demonstration, analysis)
+def test_peaks_have_the_values_of_the_tables_and_lie_on_their_curves(demo: ReportRequest, analysis: Analysis) -> None:
+    found = facts(demo, analysis)
     labels = {kind: labels_of(found, kind) for kind in (JointKind.KNEE, JointKind.ANKLE)}
     assert [len(labels[kind]) for kind in labels] == [2, 4]
     for label in labels[JointKind.KNEE]:
@@ -47,19 +45,12 @@ def test_peaks_have_the_values_of_the_tables_and_lie_on_their_curves(
         curve = found.mean_curve_deg(label.side, "knee")
         assert label.point.angle_deg == pytest.approx(curve[int(label.point.percent)])
     gated = recalibrated(analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
-    assert [label.side for label in labels_of(facts(request_of_demonstration, gated), JointKind.KNEE)] == [Side.RIGHT]
-    assert (
-        labels_of(
-            facts(request_of_demonstration, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE)), JointKind.KNEE
-        )
-        == []
-    )
+    assert [label.side for label in labels_of(facts(demo, gated), JointKind.KNEE)] == [Side.RIGHT]
+    assert labels_of(facts(demo, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE)), JointKind.KNEE) == []
 
 
-def test_the_headlines_movement_has_a_bracket_with_its_numbers(
-    request_of_demonstration: ReportRequest, analysis: Analysis
-) -> None:
-    found = facts(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))
+def test_the_headlines_movement_has_a_bracket_with_its_numbers(demo: ReportRequest, analysis: Analysis) -> None:
+    found = facts(demo, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))
     headline = headline_of(found)
     bracket = bracket_of(found, headline)
     assert bracket is not None
@@ -70,22 +61,20 @@ def test_the_headlines_movement_has_a_bracket_with_its_numbers(
     assert bracket.first.joint is Joint.LEFT_KNEE
 
 
-def test_similar_legs_and_stance_have_no_bracket(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
+def test_similar_legs_and_stance_have_no_bracket(demo: ReportRequest, analysis: Analysis) -> None:
     for changed in (analysis, with_more(analysis, Side.LEFT, "stance_percent", 6.0)):
-        found = facts(request_of_demonstration, changed)
+        found = facts(demo, changed)
         assert bracket_of(found, headline_of(found)) is None
 
 
-def test_a_bump_leaves_the_band_and_a_height_alone_does_not(
-    request_of_demonstration: ReportRequest, analysis: Analysis
-) -> None:
+def test_a_bump_leaves_the_band_and_a_height_alone_does_not(demo: ReportRequest, analysis: Analysis) -> None:
     walk = at_speed(analysis, 1.2)
-    before = [gap.joint for gap in gaps_of(facts(request_of_demonstration, walk))]
+    before = [gap.joint for gap in gaps_of(facts(demo, walk))]
     assert Joint.RIGHT_KNEE not in before
     bump = np.zeros(101)
     bump[25:40] = np.deg2rad(25.0)
-    after = gaps_of(facts(request_of_demonstration, moved(walk, Joint.RIGHT_KNEE, bump)))
+    after = gaps_of(facts(demo, moved(walk, Joint.RIGHT_KNEE, bump)))
     (gap,) = [gap for gap in after if gap.joint is Joint.RIGHT_KNEE]
     assert 20 < gap.first_percent < gap.last_percent < 45
-    raised = gaps_of(facts(request_of_demonstration, moved(walk, Joint.RIGHT_KNEE, np.deg2rad(25.0))))
+    raised = gaps_of(facts(demo, moved(walk, Joint.RIGHT_KNEE, np.deg2rad(25.0))))
     assert [gap for gap in raised if gap.joint is Joint.RIGHT_KNEE] == []

@@ -37,8 +37,8 @@ def with_finding(request: ReportRequest, finding: Finding) -> ReportRequest:
     return replace(request, visit=AnalysedVisit(visit.session, replace(visit.analysis, findings=findings)))
 
 
-def test_the_page_of_the_method_states_how_it_was_measured(request_of_demonstration: ReportRequest) -> None:
-    reported = stated(with_sensors(request_of_demonstration, dict.fromkeys(Site, MTI)))
+def test_the_page_of_the_method_states_how_it_was_measured(demo: ReportRequest) -> None:
+    reported = stated(with_sensors(demo, dict.fromkeys(Site, MTI)))
     for title, words in {
         "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by time stamps, on thigh, shank and foot of both",
         "Calibration": "from the patient's own free motion, for the ankle also from the walks. No set posture",
@@ -59,36 +59,34 @@ def test_the_page_of_the_method_states_how_it_was_measured(request_of_demonstrat
     assert "gaps up to 0.05 s are bridged" in reported["Angles"]
 
 
-def test_the_page_of_the_method_names_an_own_study_where_one_is_in_use(request_of_demonstration: ReportRequest) -> None:
-    assert "Error figures" not in stated(request_of_demonstration)
+def test_the_page_of_the_method_names_an_own_study_where_one_is_in_use(demo: ReportRequest) -> None:
+    assert "Error figures" not in stated(demo)
     with using(own_study().figures):
-        reported = stated(request_of_demonstration)
+        reported = stated(demo)
     assert reported["Error figures"] == "Error figures: own study, 20 people, 12 Nov 2026."
 
 
-def test_what_no_sensor_reported_is_stated_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
-    reported = stated(with_sensors(request_of_demonstration, {}))
+def test_what_no_sensor_reported_is_stated_to_be_unknown(demo: ReportRequest) -> None:
+    reported = stated(with_sensors(demo, {}))
     assert reported["Sensors"].startswith("6 × sensor of unknown model, 100.0 Hz by time stamps, on ")
     assert "The measuring range is not in the recording" in reported["Sensors"]
     assert "from angular rates of unknown kind" in reported["Angles"]
     differing = {site: replace(MTI, model=f"model {k}") for k, site in enumerate(Site)}
-    assert stated(with_sensors(request_of_demonstration, differing))["Sensors"].startswith("6 sensors of 6 models, ")
+    assert stated(with_sensors(demo, differing))["Sensors"].startswith("6 sensors of 6 models, ")
     unlike = {site: replace(MTI, rate_hz=60.0 if site.side is Side.LEFT else 120.0) for site in Site}
-    assert "set to 60–120 Hz" in stated(with_sensors(request_of_demonstration, unlike))["Sensors"]
+    assert "set to 60–120 Hz" in stated(with_sensors(demo, unlike))["Sensors"]
 
 
-def test_what_a_sensor_states_of_itself_is_one_short_line(request_of_demonstration: ReportRequest) -> None:
-    reported = stated(
-        with_sensors(request_of_demonstration, dict.fromkeys(Site, replace(MTI, model="W\n" * 300, firmware="")))
-    )
+def test_what_a_sensor_states_of_itself_is_one_short_line(demo: ReportRequest) -> None:
+    reported = stated(with_sensors(demo, dict.fromkeys(Site, replace(MTI, model="W\n" * 300, firmware=""))))
     words = reported["Sensors"].replace("\u200b", "")
     assert words.startswith("6 × W W W")
     assert 20 < words.index("…") < 45
 
 
-def test_what_was_noticed_changes_what_is_stated(request_of_demonstration: ReportRequest) -> None:
+def test_what_was_noticed_changes_what_is_stated(demo: ReportRequest) -> None:
     """The end of a range, averaged rates, feet without a sensor: each stated where it was noticed of this walk only."""
-    request = with_sensors(request_of_demonstration, {})
+    request = with_sensors(demo, {})
     walk = request.shown
     plain = stated(request)
     assert "no samples reach its limit" in plain["Sensors"]
@@ -116,8 +114,8 @@ def test_what_was_noticed_changes_what_is_stated(request_of_demonstration: Repor
     assert stated(with_finding(request, elsewhere)) == plain
 
 
-def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportRequest) -> None:
-    visit = request_of_demonstration.visit
+def test_the_calibration_is_that_of_the_walk(demo: ReportRequest) -> None:
+    visit = demo.visit
 
     def changed(**changes: Any) -> dict[str, str]:
         calibrations = tuple(
@@ -125,23 +123,21 @@ def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportReq
             for one in visit.analysis.calibrations
         )
         analysis = replace(visit.analysis, calibrations=calibrations)
-        return stated(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, analysis)))
+        return stated(replace(demo, visit=AnalysedVisit(visit.session, analysis)))
 
-    assert (
-        "Gyroscope offsets: from standing or other moments at rest." in stated(request_of_demonstration)["Calibration"]
-    )
+    assert "Gyroscope offsets: from standing or other moments at rest." in stated(demo)["Calibration"]
     assert (
         "come from the walks, as no free motion was recorded" in changed(axis_source=AxisSource.WALKING)["Calibration"]
     )
     assert "Gyroscope offsets: unknown" in changed(gyro_bias_distal_rad_s=None)["Calibration"]
     published = replace(visit.analysis, method=Method.PUBLISHED)
-    reported = stated(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, published)))
+    reported = stated(replace(demo, visit=AnalysedVisit(visit.session, published)))
     assert "equation 15 of the published method" in reported["Angles"]
     assert "the published method (after Seel" in reported["Software"]
 
 
-def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) -> None:
-    visit = request_of_demonstration.visit
+def test_only_what_was_worn_is_named(demo: ReportRequest) -> None:
+    visit = demo.visit
 
     def worn(*sites: Site) -> str:
         recordings = tuple(
@@ -149,7 +145,7 @@ def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) ->
             for one in visit.session.recordings
         )
         session = replace(visit.session, recordings=recordings)
-        return stated(replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis)))["Sensors"]
+        return stated(replace(demo, visit=AnalysedVisit(session, visit.analysis)))["Sensors"]
 
     assert "2 × simulated, " in worn(Site.LEFT_THIGH, Site.LEFT_SHANK)
     assert ", on thigh and shank of the left leg, strapped" in worn(Site.LEFT_THIGH, Site.LEFT_SHANK)
@@ -157,9 +153,9 @@ def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) ->
     assert ", on shank and foot of both legs, strapped" in worn(Site.RIGHT_FOOT, Site.LEFT_SHANK)
 
 
-def test_the_accuracy_is_what_was_measured(request_of_demonstration: ReportRequest) -> None:
+def test_the_accuracy_is_what_was_measured(demo: ReportRequest) -> None:
     """Each figure is on the manual's page Accuracy."""
-    words = stated(request_of_demonstration)["Accuracy"]
+    words = stated(demo)["Accuracy"]
     table = (ROOT / "resources" / "help" / "accuracy.md").read_text(encoding="utf-8")
     hinges = re.findall(r"\| hinge 1D_0\d \| angle [^|]*\| ([\d.]+)° ", table)
     assert "two mechanical hinges {}° and {}°".format(*hinges) in words

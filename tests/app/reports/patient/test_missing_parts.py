@@ -67,8 +67,8 @@ def readable(request: ReportRequest) -> dict[str, list[str]]:
 READ, CARE, NOT_REPORTED = "Good", "Caution", "Not reported"
 
 
-def test_without_a_zero_no_height_is_reported(request_of_demonstration: ReportRequest) -> None:
-    request = without_zero(request_of_demonstration)
+def test_without_a_zero_no_height_is_reported(demo: ReportRequest) -> None:
+    request = without_zero(demo)
     pages = shown(request)
     assert readable(request)["Left knee"] == [READ, NOT_REPORTED, READ]
     assert "Absolute angle of all joints: not reported. There is no standing reference" in pages[0]
@@ -81,9 +81,9 @@ def test_without_a_zero_no_height_is_reported(request_of_demonstration: ReportRe
     assert "At initial contact" not in pages[1]
 
 
-def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) -> None:
-    gait = {Side.LEFT: gait_of(request_of_demonstration)[Side.LEFT]}
-    request = with_walk(request_of_demonstration, gait)
+def test_one_leg_alone_is_not_compared(demo: ReportRequest) -> None:
+    gait = {Side.LEFT: gait_of(demo)[Side.LEFT]}
+    request = with_walk(demo, gait)
     pages = shown(request)
     assert list(readable(request)) == ["Left knee", "Left ankle", "Distance"]
     assert "Right knee" not in pages[0]
@@ -92,12 +92,12 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     assert not re.search(r"similar|\bvs\b|\bright\b", pages[0].split("Summary")[1])
 
 
-def test_without_a_foot_sensor_a_line_is_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
+def test_without_a_foot_sensor_a_line_is_in_place_of_the_ankle(demo: ReportRequest) -> None:
     def knees_only(gait: SideGait) -> SideGait:
         return replace(gait, cycles={joint: cycles for joint, cycles in gait.cycles.items() if joint.is_knee})
 
-    gait = {side: knees_only(g) for side, g in gait_of(request_of_demonstration).items()}
-    request = with_walk(request_of_demonstration, gait)
+    gait = {side: knees_only(g) for side, g in gait_of(demo).items()}
+    request = with_walk(demo, gait)
     session = request.visit.session
     recordings = tuple(
         replace(r, imu={site: block for site, block in r.imu.items() if "foot" not in site}) for r in session.recordings
@@ -110,8 +110,8 @@ def test_without_a_foot_sensor_a_line_is_in_place_of_the_ankle(request_of_demons
     assert "Ankle not measured: no sensor on the left and right foot." in pages[0]
 
 
-def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: ReportRequest) -> None:
-    request = with_strides(request_of_demonstration, 2)
+def test_two_strides_make_no_mean_and_no_number(demo: ReportRequest) -> None:
+    request = with_strides(demo, 2)
     pages = shown(request)
     assert readable(request)["Right knee"] == [NOT_REPORTED] * 3
     assert "Both legs: not reported. Few strides (2 used, 3 required)." in pages[0]
@@ -122,17 +122,15 @@ def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: Report
     assert "Largest differences" not in pages[0]
 
 
-def test_single_strides_that_make_no_mean_are_drawn_each_with_its_letter(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    pages = report_data(with_strides(request_of_demonstration, 2))["pages"]
+def test_single_strides_that_make_no_mean_are_drawn_each_with_its_letter(demo: ReportRequest) -> None:
+    pages = report_data(with_strides(demo, 2))["pages"]
     drawn = [picture["svg"] for block in pages[0] if block["kind"] == "figures" for picture in block["pictures"]][:2]
     assert [(svg.count(">L<"), svg.count(">R<")) for svg in drawn] == [(2, 2), (2, 2)]
     assert not any("Not reported" in svg for svg in drawn)
 
 
-def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: ReportRequest) -> None:
-    request = with_strides(request_of_demonstration, 5)
+def test_five_strides_make_a_mean_without_a_spread(demo: ReportRequest) -> None:
+    request = with_strides(demo, 5)
     page = report_data(request)["pages"][0]
     (table,) = (block for block in page if block["kind"] == "table")
     swing = next(row["cells"] for row in table["rows"] if "cells" in row and "swing (55" in row["cells"][0]["said"])
@@ -142,8 +140,8 @@ def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: Rep
     assert "Both legs: caution. Few strides (5 used, 10 required)." in shown(request)[0]
 
 
-def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportRequest) -> None:
-    request = with_analysis(request_of_demonstration, with_few_strides(request_of_demonstration.visit.analysis, left=2))
+def test_one_short_leg_does_not_hide_the_other(demo: ReportRequest) -> None:
+    request = with_analysis(demo, with_few_strides(demo.visit.analysis, left=2))
     pages = shown(request)
     assert readable(request)["Left knee"] == [NOT_REPORTED] * 3
     assert readable(request)["Right knee"] == [READ] * 3
@@ -151,24 +149,22 @@ def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportR
     assert re.search(r"Range of motion not reported \d+\.\d ± \d\.\d – –", pages[1])
 
 
-def test_no_stride_at_all_still_makes_a_report_of_one_page(request_of_demonstration: ReportRequest) -> None:
-    pages = shown(with_walk(request_of_demonstration, {}))
+def test_no_stride_at_all_still_makes_a_report_of_one_page(demo: ReportRequest) -> None:
+    pages = shown(with_walk(demo, {}))
     assert len(pages) == 1
     assert "No results for this walk: no foot or shank sensor showed a stride." in pages[0]
     assert "Signature" in pages[0]
 
 
-def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_not_reported(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    request = with_joints(request_of_demonstration, axis_sd_rad=np.deg2rad(8.0))
+def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_not_reported(demo: ReportRequest) -> None:
+    request = with_joints(demo, axis_sd_rad=np.deg2rad(8.0))
     pages = shown(request)
     assert readable(request)["Left knee"] == readable(request)["Right ankle"] == [CARE, CARE, READ]
     assert "All joints: caution. The calibration has an uncertainty of ±8.0° (limit ±6.5°)." in pages[0]
     assert "All joints: The calibration has an uncertainty of ±8.0° (limit ±6.5°). Record free motion" in pages[3]
     assert "0.9 *" in pages[1]
     assert "*: caution; reason under data quality." in pages[1]
-    request = with_joints(request_of_demonstration, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
+    request = with_joints(demo, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
     pages = shown(request)
     assert readable(request)["Left ankle"] == [NOT_REPORTED, NOT_REPORTED, READ]
     assert readable(request)["Left knee"] == [READ] * 3
@@ -177,8 +173,8 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_not_reported(
     assert "*" not in pages[1]
 
 
-def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: ReportRequest) -> None:
-    pages = shown(with_joints(request_of_demonstration, Joint.LEFT_KNEE, is_sign_certain=False))
+def test_an_uncertain_sign_leaves_the_range_alone(demo: ReportRequest) -> None:
+    pages = shown(with_joints(demo, Joint.LEFT_KNEE, is_sign_certain=False))
     stated = "All values of left knee except range of motion: not reported. Flexion and extension could not be"
     assert stated in pages[0]
     assert "Not drawn: left knee (not reported)." in pages[1]
@@ -186,11 +182,9 @@ def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: Repo
     assert re.search(r"Range of motion 61\.7 ± 0\.8 63\.0", pages[1])
 
 
-def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    usual = shown(request_of_demonstration)
-    request = with_joints(request_of_demonstration, Joint.RIGHT_ANKLE, is_same_joint=False, sign_margin=1.05)
+def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(demo: ReportRequest) -> None:
+    usual = shown(demo)
+    request = with_joints(demo, Joint.RIGHT_ANKLE, is_same_joint=False, sign_margin=1.05)
     pages = shown(request)
     assert len(pages) == len(usual)
     reported = readable(request)
@@ -209,21 +203,19 @@ def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(
     assert "not reported" not in "".join(usual[:3]).casefold()
 
 
-def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: ReportRequest) -> None:
-    session = request_of_demonstration.visit.session
+def test_a_child_and_a_crawl_stand_beside_no_band(demo: ReportRequest) -> None:
+    session = demo.visit.session
     child = replace(session, started="2026-11-20T09:42:00+01:00", patient=replace(session.patient, birth_year=2016))
-    visit = AnalysedVisit(child, request_of_demonstration.visit.analysis)
-    pages = shown(replace(request_of_demonstration, visit=visit))
+    visit = AnalysedVisit(child, demo.visit.analysis)
+    pages = shown(replace(demo, visit=visit))
     for page in pages:
         assert "No reference: all reference groups are adults." in page
 
 
-def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    visit = request_of_demonstration.visit
-    unset = without_zero(request_of_demonstration).visit
-    pages = shown(replace(request_of_demonstration, earlier=unset))
+def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(demo: ReportRequest) -> None:
+    visit = demo.visit
+    unset = without_zero(demo).visit
+    pages = shown(replace(demo, earlier=unset))
     page = pages[4]
     assert (
         "The standing reference is missing or of another kind: only range of motion and timing are compared."
@@ -232,18 +224,18 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
     assert "Reference mean, ±1 SD" not in page
     assert "Peak knee flexion, swing not reported 58.8 ± 0.9 – – not reported" in page
     assert re.search(r"Knee range of motion 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 −\d+ to \+\d+ may be error", page)
-    assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]
+    assert "degrees (flexion +" in shown(replace(demo, earlier=visit))[4]
 
 
-def test_gaps_and_slips_are_stated(request_of_demonstration: ReportRequest) -> None:
-    analysis = request_of_demonstration.visit.analysis
+def test_gaps_and_slips_are_stated(demo: ReportRequest) -> None:
+    analysis = demo.visit.analysis
     slip = Finding("strap_slipped", Severity.WARNING, "walk 1, right_shank", {"from_s": 2.0, "turn_deg": 9})
     changed = rewalked(
         replace(analysis, findings=(*analysis.findings, slip)),
-        received={Site.LEFT_FOOT: with_gaps(4.2, gait_of(request_of_demonstration)[Side.LEFT])},
+        received={Site.LEFT_FOOT: with_gaps(4.2, gait_of(demo)[Side.LEFT])},
         slipped_from_s={Side.RIGHT: 2.0},
     )
-    request = with_analysis(request_of_demonstration, changed)
+    request = with_analysis(demo, changed)
     pages = shown(request)
     assert "4.2 % (L foot)" in pages[3]
     assert "moved: R shank" in pages[3]
@@ -254,9 +246,9 @@ def test_gaps_and_slips_are_stated(request_of_demonstration: ReportRequest) -> N
     assert re.search(r"\d+ more on page 4\.", pages[0])
 
 
-def test_clocks_that_cannot_be_compared_are_stated(request_of_demonstration: ReportRequest) -> None:
-    request = with_joints(request_of_demonstration, lag_sd_s=None, is_clock_shared=False)
-    pages, usual = shown(request), shown(request_of_demonstration)
+def test_clocks_that_cannot_be_compared_are_stated(demo: ReportRequest) -> None:
+    request = with_joints(demo, lag_sd_s=None, is_clock_shared=False)
+    pages, usual = shown(request), shown(demo)
     assert len(pages) == len(usual)
     assert readable(request)["Left knee"][:2] == [NOT_REPORTED, NOT_REPORTED]
     assert "All joints: not reported. The two sensors could not be synchronised from the movement." in pages[0]
@@ -264,21 +256,19 @@ def test_clocks_that_cannot_be_compared_are_stated(request_of_demonstration: Rep
     assert "not determinable" not in usual[3]
 
 
-def test_strides_left_out_are_counted_by_their_reasons(request_of_demonstration: ReportRequest) -> None:
-    gait = gait_of(request_of_demonstration)
+def test_strides_left_out_are_counted_by_their_reasons(demo: ReportRequest) -> None:
+    gait = gait_of(demo)
     strides = gait[Side.LEFT].strides
     reason = (Reason.TURN,) * 2 + (Reason.STOP,) + (Reason.USED,) * (len(strides) - 3)
     left = replace(gait[Side.LEFT], strides=replace(strides, reason=reason))
-    page = shown(with_walk(request_of_demonstration, {**gait, Side.LEFT: left}))[3]
+    page = shown(with_walk(demo, {**gait, Side.LEFT: left}))[3]
     assert "L 2 turning, 1 stopping" in page
     assert "mostly" not in page
 
 
 @pytest.mark.parametrize("simulated", [True, False])
-def test_simulated_data_say_so_everywhere_and_real_data_nowhere(
-    request_of_demonstration: ReportRequest, simulated: bool
-) -> None:
-    analysis = replace(request_of_demonstration.visit.analysis, is_simulated=simulated, findings=())
-    session = replace(request_of_demonstration.visit.session, sensors={})
-    request = replace(request_of_demonstration, visit=AnalysedVisit(session, analysis))
+def test_simulated_data_say_so_everywhere_and_real_data_nowhere(demo: ReportRequest, simulated: bool) -> None:
+    analysis = replace(demo.visit.analysis, is_simulated=simulated, findings=())
+    session = replace(demo.visit.session, sensors={})
+    request = replace(demo, visit=AnalysedVisit(session, analysis))
     assert all(("SIMULATED" in page) is simulated for page in shown(request))

@@ -142,8 +142,8 @@ def numbers_of(data: dict[str, Any]) -> list[tuple[str, str]]:
     return numbers
 
 
-def test_every_number_in_a_table_is_in_a_file(request_of_demonstration: ReportRequest, results: Path) -> None:
-    numbers, files = numbers_of(report_data(request_of_demonstration)), known(results)
+def test_every_number_in_a_table_is_in_a_file(demo: ReportRequest, results: Path) -> None:
+    numbers, files = numbers_of(report_data(demo)), known(results)
     assert len(numbers) > 95
     assert [(where, number) for where, number in numbers if number not in files] == []
 
@@ -159,11 +159,9 @@ def test_every_number_of_one_leg_alone_is_in_a_file(request_of_one_leg: ReportRe
 
 
 @pytest.mark.endurance
-def test_every_curve_is_in_a_file(
-    request_of_demonstration: ReportRequest, results: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_every_curve_is_in_a_file(demo: ReportRequest, results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Means are of cycles.csv, single strides of angles.csv between the times of strides.csv."""
-    charts = drawn(request_of_demonstration, monkeypatch)
+    charts = drawn(demo, monkeypatch)
     cycles, angles = table(results / "walk_1" / "cycles.csv"), table(results / "walk_1" / "angles.csv")
     assert len(charts) == 2 * len(first_page.CHART_HEIGHTS) + 2 + 4
     for chart in charts:
@@ -200,15 +198,15 @@ def drawn(request: ReportRequest, monkeypatch: pytest.MonkeyPatch) -> list[Strid
 
 @pytest.mark.endurance
 def test_every_number_and_curve_of_a_comparison_is_in_a_file(
-    request_of_alignments: ReportRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    aligned: ReportRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    visit = request_of_alignments.visit
+    visit = aligned.visit
     write_results(visit.session, visit.analysis, tmp_path)
-    numbers, files = numbers_of(report_data(request_of_alignments)), known(tmp_path, "walk_3")
+    numbers, files = numbers_of(report_data(aligned)), known(tmp_path, "walk_3")
     assert len(numbers) > 200
     assert [(where, number) for where, number in numbers if number not in files] == []
     cycles = table(tmp_path / "compared_cycles.csv")
-    compared = [chart for chart in drawn(request_of_alignments, monkeypatch) if len(chart.curves) == 3]
+    compared = [chart for chart in drawn(aligned, monkeypatch) if len(chart.curves) == 3]
     assert len(compared) == 4
     for chart in compared:
         kind = "knee" if "nee" in chart.title else "ankle"
@@ -244,7 +242,7 @@ def test_words_against_a_band_state_the_size_of_a_distance_only() -> None:
     }
 
 
-def test_no_word_of_the_report_judges(request_of_alignments: ReportRequest) -> None:
-    stated = json.dumps(report_data(replace(request_of_alignments, comment="")), ensure_ascii=False).lower()
+def test_no_word_of_the_report_judges(aligned: ReportRequest) -> None:
+    stated = json.dumps(report_data(replace(aligned, comment="")), ensure_ascii=False).lower()
     for word in ("better", "worse", "improve", "normal", "significant", "abnormal", "patholog"):
         assert not re.search(rf"\b{word}", stated), word

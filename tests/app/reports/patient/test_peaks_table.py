@@ -41,9 +41,9 @@ def groups(request: ReportRequest, analysis: Analysis) -> dict[str, dict[str, li
     return found
 
 
-def test_movements_stand_before_the_angles_of_each_joint(request_of_demonstration: ReportRequest) -> None:
-    analysis = request_of_demonstration.visit.analysis
-    found = groups(request_of_demonstration, analysis)
+def test_movements_stand_before_the_angles_of_each_joint(demo: ReportRequest) -> None:
+    analysis = demo.visit.analysis
+    found = groups(demo, analysis)
     heads = list(found)
     assert heads[1].startswith("Knee: absolute angles (flexion +); whole curve vs reference: L")
     assert heads[::2] == ["Knee: movement ranges", "Ankle: movement ranges"]
@@ -58,8 +58,8 @@ def test_movements_stand_before_the_angles_of_each_joint(request_of_demonstratio
     assert (high - low) / 2 == pytest.approx(7.8, abs=0.6)
 
 
-def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_demonstration: ReportRequest) -> None:
-    analysis = request_of_demonstration.visit.analysis
+def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(demo: ReportRequest) -> None:
+    analysis = demo.visit.analysis
     recordings = []
     for one in analysis.recordings:
         gait = dict(one.gait)
@@ -71,7 +71,7 @@ def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_
             }
             gait[Side.LEFT] = replace(gait[Side.LEFT], parameters=flat)
         recordings.append(replace(one, gait=gait))
-    found = groups(request_of_demonstration, judged(replace(analysis, recordings=tuple(recordings))))
+    found = groups(demo, judged(replace(analysis, recordings=tuple(recordings))))
     knee = found["Knee: movement ranges"]
     assert knee["Flexion, loading response"][0] == knee["Flexion, loading response"][2] == "–"
     assert knee["Flexion, stance to swing"][0] != "–"
@@ -79,9 +79,9 @@ def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_
     assert heights["Peak flexion, loading (5–30\u00a0%)"][0] == "no peak"
 
 
-def test_without_a_sign_the_range_alone_is_reported(request_of_demonstration: ReportRequest) -> None:
-    analysis = request_of_demonstration.visit.analysis
+def test_without_a_sign_the_range_alone_is_reported(demo: ReportRequest) -> None:
+    analysis = demo.visit.analysis
     unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
-    knee = groups(request_of_demonstration, unsure)["Knee: movement ranges"]
+    knee = groups(demo, unsure)["Knee: movement ranges"]
     assert [knee[name][0] for name in MOVEMENTS[:3]] == ["not reported"] * 3
     assert "±" in knee["Range of motion"][0]

@@ -12,8 +12,9 @@ import pytest
 import typst
 
 from app.cli.main import main
+from app.exports.result_folder import session_of
 from app.reports.patient.document import make_report
-from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, session_of
+from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
@@ -89,7 +90,7 @@ def test_the_last_walk_of_each_condition_is_shown(alignments: AnalysedVisit) -> 
 
 
 def test_what_is_typed_reaches_the_template_as_data_in_memory_and_nothing_there_runs_or_reads(
-    request_of_demonstration: ReportRequest, monkeypatch: pytest.MonkeyPatch
+    demo: ReportRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     came: list[tuple[bytes, dict[str, Any]]] = []
 
@@ -98,7 +99,7 @@ def test_what_is_typed_reaches_the_template_as_data_in_memory_and_nothing_there_
         return b"", []
 
     monkeypatch.setattr(typst, "compile_with_warnings", compiled)
-    make_report(replace(request_of_demonstration, comment='#eval("1") #image("/etc/passwd")'))
+    make_report(replace(demo, comment='#eval("1") #image("/etc/passwd")'))
     ((template, options),) = came
     assert b"passwd" not in template
     assert "passwd" in options["sys_inputs"]["data"]

@@ -60,14 +60,14 @@ def rows(blocks: list[Block]) -> dict[tuple[str, str], list[str]]:
     return {(name, side): rest for name, side, *rest in cells}
 
 
-def test_one_visit_or_two_without_a_common_condition_make_no_page(request_of_demonstration: ReportRequest) -> None:
-    assert page(request_of_demonstration, visits(walk())) == []
-    assert page(request_of_demonstration, visits(walk(condition="stick"), walk(condition="shoes")), "shoes") == []
-    assert page(request_of_demonstration, visits(None, walk())) == []
+def test_one_visit_or_two_without_a_common_condition_make_no_page(demo: ReportRequest) -> None:
+    assert page(demo, visits(walk())) == []
+    assert page(demo, visits(walk(condition="stick"), walk(condition="shoes")), "shoes") == []
+    assert page(demo, visits(None, walk())) == []
 
 
-def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_demonstration: ReportRequest) -> None:
-    found = sentences(page(request_of_demonstration, visits(walk(31), walk(36), walk(52))))
+def test_a_change_beyond_the_error_is_a_sentence_with_both_values(demo: ReportRequest) -> None:
+    found = sentences(page(demo, visits(walk(31), walk(36), walk(52))))
     assert len(found) == 1
     assert found[0].startswith(
         "Left knee flexes 52.0° from stance to swing at visit 3, 21.0° more than at visit 1 (31.0°). Likely between 1"
@@ -75,42 +75,40 @@ def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_dem
     assert "Since visit 2 +16.0°, likely +10 to +22." in found[0]
 
 
-def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportRequest) -> None:
-    found = sentences(page(request_of_demonstration, visits(walk(50), walk(54))))
+def test_a_change_inside_the_error_is_none(demo: ReportRequest) -> None:
+    found = sentences(page(demo, visits(walk(50), walk(54))))
     assert found == ["All judged changes are within measurement error."]
 
 
 def test_a_not_reported_visit_is_a_gap_and_the_change_counts_from_the_first_that_can_be_read(
-    request_of_demonstration: ReportRequest,
+    demo: ReportRequest,
 ) -> None:
     seen = visits(walk(20, is_not_reported=True), walk(31), walk(33), walk(35, is_not_reported=True), walk(52))
-    blocks = page(request_of_demonstration, seen)
+    blocks = page(demo, seen)
     knee = rows(blocks)["Knee flexion, stance to swing, °", "L"]
     assert knee[:5] == ["not reported", "31.0", "33.0", "not reported", "52.0"]
     assert knee[5:7] == ["+19.0", "+21.0"]
     assert "more than at visit 2 (31.0°)" in sentences(blocks)[0]
 
 
-def test_where_the_last_visit_is_not_reported_nothing_is_stated_of_a_change(
-    request_of_demonstration: ReportRequest,
-) -> None:
-    blocks = page(request_of_demonstration, visits(walk(31), walk(52), walk(52, is_not_reported=True)))
+def test_where_the_last_visit_is_not_reported_nothing_is_stated_of_a_change(demo: ReportRequest) -> None:
+    blocks = page(demo, visits(walk(31), walk(52), walk(52, is_not_reported=True)))
     assert rows(blocks)["Knee flexion, stance to swing, °", "L"][3:] == ["–", "–", "–", "–"]
     assert not any("knee" in one for one in sentences(blocks))
 
 
-def test_of_many_visits_the_table_has_the_first_and_the_latest(request_of_demonstration: ReportRequest) -> None:
+def test_of_many_visits_the_table_has_the_first_and_the_latest(demo: ReportRequest) -> None:
     days = [datetime.date(2026, 1, 1) + datetime.timedelta(weeks=k) for k in range(9)]
     seen = [CourseVisit(UUID(int=k), day, walk(30 + k)) for k, day in enumerate(days)]
-    (table,) = (block for block in page(request_of_demonstration, seen) if block["kind"] == "table")
+    (table,) = (block for block in page(demo, seen) if block["kind"] == "table")
     columns = table["columns"]
     assert isinstance(columns, list)
     assert [column["title"] for column in columns[2:8]] == ["1", "5", "6", "7", "8", "9"]
 
 
-def test_the_page_is_in_the_report_where_visits_were_given(request_of_demonstration: ReportRequest) -> None:
+def test_the_page_is_in_the_report_where_visits_were_given(demo: ReportRequest) -> None:
     seen = visits(walk(31), walk(52))
-    without, with_it = (report_data(replace(request_of_demonstration, course=tuple(course))) for course in ((), seen))
+    without, with_it = (report_data(replace(demo, course=tuple(course))) for course in ((), seen))
     assert len(with_it["pages"]) == len(without["pages"]) + 1
     assert with_it["pages"][-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
 
@@ -139,11 +137,9 @@ def knee_goal(value: float, agreed: str = DAYS[1]) -> Goal:
     return Goal(KNEE, GoalOf.LEFT, value, datetime.date.fromisoformat(agreed), "H. Keller")
 
 
-def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_states_how_the_last_visit_is(
-    request_of_demonstration: ReportRequest,
-) -> None:
+def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_states_how_the_last_visit_is(demo: ReportRequest) -> None:
     seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
-    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), seen)
+    blocks = page(with_goals(demo, knee_goal(41.0)), seen)
     assert sentences(blocks)[-1] == (
         "Goal: Knee flexion, stance to swing, left: at least 41°; measured 52.0°, reached; the difference is beyond "
         "measurement error (±7.1°). More than 9 of 10 such measurements are at the goal. First reached at visit 4."
@@ -151,47 +147,37 @@ def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_states_how_the_last_v
     (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
     assert "goal L 41°, agreed 16 Sep" in str(drawn)
     assert "Keller" in str(drawn)
-    inside = sentences(page(with_goals(request_of_demonstration, knee_goal(55.0)), seen))[-1]
+    inside = sentences(page(with_goals(demo, knee_goal(55.0)), seen))[-1]
     assert inside.endswith(
         "not reached; the difference is within measurement error (±7.1°). 1 of 10 such measurements is at the goal."
     )
 
 
-def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_stated_to_be_nothing(
-    request_of_demonstration: ReportRequest,
-) -> None:
+def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_stated_to_be_nothing(demo: ReportRequest) -> None:
     seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
-    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0, DAYS[-1])), seen)
+    blocks = page(with_goals(demo, knee_goal(41.0, DAYS[-1])), seen)
     assert not any(one.startswith("Goal") for one in sentences(blocks))
     assert "goal L 41°" in str(blocks)
     not_reported = visits(*(walk(knee_deg=52.0, is_not_reported=number == 4) for number in range(5)))
-    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), not_reported)
+    blocks = page(with_goals(demo, knee_goal(41.0)), not_reported)
     assert not any(one.startswith("Goal") for one in sentences(blocks))
 
 
-def test_a_measure_with_a_goal_has_a_chart_of_its_own_and_no_more_than_four_are_drawn(
-    request_of_demonstration: ReportRequest,
-) -> None:
+def test_a_measure_with_a_goal_has_a_chart_of_its_own_and_no_more_than_four_are_drawn(demo: ReportRequest) -> None:
     seen = visits(walk(), walk())
     stride = Goal("stride_length_m", GoalOf.RIGHT, 1.3, datetime.date.fromisoformat(DAYS[0]))
-    (drawn,) = (
-        block["pictures"]
-        for block in page(with_goals(request_of_demonstration, stride), seen)
-        if block["kind"] == "figures"
-    )
+    (drawn,) = (block["pictures"] for block in page(with_goals(demo, stride), seen) if block["kind"] == "figures")
     assert isinstance(drawn, list)
     assert len(drawn) <= 4
     assert "Stride length, m" in str(drawn)
-    assert "Stride length" not in str(page(request_of_demonstration, seen))
+    assert "Stride length" not in str(page(demo, seen))
 
 
-def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_stated(
-    request_of_demonstration: ReportRequest,
-) -> None:
+def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_stated(demo: ReportRequest) -> None:
     seen = visits(walk(), walk(), walk())
     agreed = datetime.date.fromisoformat(DAYS[0])
     every = [Goal(column, of, 20.0, agreed) for column in (KNEE, "knee_range_deg", "ankle_range_deg") for of in LEGS]
-    blocks = page(with_goals(request_of_demonstration, *every), seen)
+    blocks = page(with_goals(demo, *every), seen)
     assert sum(one.startswith("Goal") for one in sentences(blocks)) == 5
     (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
     lines = re.findall(r'y="([\d.]+)"[^>]*>· · · goal ([LR]) 20', str(drawn))
@@ -202,8 +188,8 @@ def with_test(time_s: float, speed_m_s: float = 1.0, protocol: TimedProtocol = T
     return course((walked(speed_m_s=speed_m_s), ""), (timed(protocol, time_s=time_s), ""))
 
 
-def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(request_of_demonstration: ReportRequest) -> None:
-    blocks = page(request_of_demonstration, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
+def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(demo: ReportRequest) -> None:
+    blocks = page(demo, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
     assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "+0.57 to +0.93", "○"]
     reported = [one for one in sentences(blocks) if "m/s" in one]
     assert len(reported) == 1
@@ -212,7 +198,7 @@ def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(request_of_de
         "Likely between 0.57 and 0.93 m/s."
     )
     chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
-    blocks = page(request_of_demonstration, chair)
+    blocks = page(demo, chair)
     assert rows(blocks)[f"{name_of_test(TimedProtocol.SIT_TO_STAND)}, s", ""] == [
         "30.0",
         "12.0",
@@ -222,4 +208,4 @@ def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(request_of_de
         "not judged",
     ]
     assert sentences(blocks) == ["All judged changes are within measurement error."]
-    assert not any("10-metre" in name for name, _ in rows(page(request_of_demonstration, visits(walk(), walk()))))
+    assert not any("10-metre" in name for name, _ in rows(page(demo, visits(walk(), walk()))))

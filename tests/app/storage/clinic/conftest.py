@@ -20,15 +20,13 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system.progress import nobody
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 @pytest.fixture
@@ -47,9 +45,7 @@ def database_url(postgres_url: str) -> Iterator[str]:
 @pytest.fixture(scope="session")
 def walked() -> Session:
     """A simulated patient who is, moves and walks."""
-    return simulate(
-        WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=6)))
-    ).session
+    return session_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=6))))
 
 
 @pytest.fixture(scope="session")
@@ -61,7 +57,7 @@ def untouched(tmp_path_factory: pytest.TempPathFactory, walked: Session) -> Open
     slots.add(data_key, "ab", PASSPHRASE + " too")
     library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
     library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
-    import_session(OpenedLibrary(library, folder, data_key), walked, silent, "DEMO-1", room=ANY_ROOM)
+    import_session(OpenedLibrary(library, folder, data_key), walked, nobody, "DEMO-1", room=ANY_ROOM)
     library.close()
     return OpenedLibrary(library, folder, data_key)
 
@@ -101,7 +97,7 @@ def open_at(untouched: OpenedLibrary) -> Iterator[OpenAt]:
 def moved(folder: Path, database_url: str, shared_place: Path, open_at: OpenAt) -> Station:
     """The station that the library's folder has become."""
     station = new_station(database_url, str(shared_place))
-    move_to_server(open_at(folder), station, silent)
+    move_to_server(open_at(folder), station, nobody)
     return station
 
 

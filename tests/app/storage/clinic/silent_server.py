@@ -1,4 +1,4 @@
-"""A way to a server that can fall silent: connections stay, and nothing comes any more."""
+"""A way to a server that can fall nobody: connections stay, and nothing comes any more."""
 
 import socket
 import threading

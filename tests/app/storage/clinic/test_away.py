@@ -17,11 +17,12 @@ from app.storage.exchange import session_with_samples
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import LibraryError, NotAllowedError, Role
+from app.system.progress import nobody
 from app.workers.library_holder import LibraryHolder
 from app.workers.library_state import NotOpened, OpenedState
 from core.goals import Goal, GoalOf, ordered
 from core.session import Patient, Session
-from tests.app.storage.clinic.conftest import PASSPHRASE, silent
+from tests.app.storage.clinic.conftest import PASSPHRASE
 from tests.app.storage.clinic.test_stations import found, read, record
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
@@ -52,7 +53,7 @@ def test_a_session_that_was_made_without_the_server_is_read_at_the_other_station
     assert hand_over(first) == set(walks)
     visit = second.library.sessions.get(session_id)
     assert [recording.details.name for recording in visit.recordings] == ["walk 1", "walk 2"]
-    assert len(session_with_samples(second, visit, {}, silent).recordings) == 2
+    assert len(session_with_samples(second, visit, {}, nobody).recordings) == 2
     patient = second.library.patients.find("DEMO-9")
     assert patient is not None
     assert patient.details.height_m == 1.6
@@ -112,7 +113,7 @@ def test_a_station_that_was_restored_from_an_image_brings_what_it_recorded_since
     assert bring_away_home(first) == 1
     hand_over(first)
     visit = second.library.sessions.get(new)
-    assert len(session_with_samples(second, visit, {}, silent).recordings) == len(walks)
+    assert len(session_with_samples(second, visit, {}, nobody).recordings) == len(walks)
     assert second.library.sessions.get(old).recordings
     assert len(second.library.audit.entries()) > entries
     shutil.copytree(image, first.folder / AWAY)
@@ -166,7 +167,7 @@ def test_a_recording_that_was_killed_without_the_server_is_recovered_as_any(stat
     assert (one.recording_id, one.is_orphan) == (orphan, True)
     assert one.belonging is not None
     assert one.belonging.session_id == visit.id
-    adopt_home(first, one, silent)
+    adopt_home(first, one, nobody)
     hand_over(first)
     read(second, orphan)
 
@@ -180,7 +181,7 @@ def test_a_recording_that_is_open_is_the_stations_to_recover(stations: Stations)
     bring_away_home(first)
     assert find_interrupted(second) == ()
     (one,) = find_interrupted(first)
-    recover(first, one, silent)
+    recover(first, one, nobody)
     assert hand_over(first) == {walk}
 
 

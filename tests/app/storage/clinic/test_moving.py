@@ -19,8 +19,9 @@ from app.storage.layout import DATABASE, MOVING
 from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import LibraryError, Operator, Role
+from app.system.progress import nobody
 from core.session import Session
-from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt, silent
+from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 
@@ -37,7 +38,7 @@ def everything_of(opened: OpenedLibrary) -> Reading:
         "visits": [replace(visit, recordings=()) for visit in visits],
         "recordings": [recording.details for visit in visits for recording in visit.recordings],
         "operators": library.operators.list(),
-        "samples": [samples_of(session_with_samples(opened, visit, {}, silent)) for visit in visits],
+        "samples": [samples_of(session_with_samples(opened, visit, {}, nobody)) for visit in visits],
     }
 
 
@@ -79,7 +80,7 @@ def test_it_comes_back_as_it_was_and_the_server_is_closed(
     before: Reading, moved: Station, folder: Path, tmp_path: Path, open_at: OpenAt
 ) -> None:
     station = open_at(folder)
-    back = bring_back(station, tmp_path / "back", silent)
+    back = bring_back(station, tmp_path / "back", nobody)
     assert (back.journals, back.missing) == (3, 0)
     with open_library(tmp_path / "back", PASSPHRASE, "hk") as opened:
         assert opened.library.station is None
@@ -97,7 +98,7 @@ def test_a_copy_leaves_the_server_as_it_is(
     before: Reading, moved: Station, folder: Path, tmp_path: Path, open_at: OpenAt
 ) -> None:
     station = open_at(folder)
-    bring_back(station, tmp_path / "copy", silent, is_copy=True)
+    bring_back(station, tmp_path / "copy", nobody, is_copy=True)
     with open_library(tmp_path / "copy", PASSPHRASE, "hk") as opened:
         assert everything_of(opened) == before
     assert station.library.patients.find("DEMO-1") is not None
@@ -111,7 +112,7 @@ def test_nothing_is_brought_back_while_something_waits_at_a_station(
     recording = first.library.sessions.get(line.id).recordings[0]
     second.library.recordings.start(line.id, replace(recording.details, name="walk 9"), True)
     with pytest.raises(LibraryError, match="recordings are running or not yet transferred from a workstation"):
-        bring_back(first, tmp_path / "back", silent)
+        bring_back(first, tmp_path / "back", nobody)
     assert not (tmp_path / "back").exists()
     assert second.library.patients.find("DEMO-1") is not None
 
@@ -142,11 +143,11 @@ def test_a_move_that_is_broken_off_anywhere_goes_on(
     with monkeypatch.context() as patched:
         patched.setattr(moving, step, broken)
         with pytest.raises(KeyboardInterrupt):
-            move_to_server(open_at(folder), station, silent)
+            move_to_server(open_at(folder), station, nobody)
     if not (is_done and step == "become_station"):
         with pytest.raises(LibraryError, match="is being moved"):
             open_library(folder, PASSPHRASE, "hk")
-        move_to_server(open_at(folder), station, silent)
+        move_to_server(open_at(folder), station, nobody)
     with open_library(folder, PASSPHRASE, "hk") as opened:
         assert everything_of(opened) == before
         reported = [entry for entry in opened.library.audit.entries() if "is_moved_to_server" in entry.details]
@@ -167,7 +168,7 @@ def test_a_move_that_is_given_up_leaves_the_folder_to_work_with(
     with monkeypatch.context() as patched:
         patched.setattr(moving, "_refuse_difference", broken)
         with pytest.raises(KeyboardInterrupt):
-            move_to_server(open_at(folder), new_station(database_url, str(shared_place)), silent)
+            move_to_server(open_at(folder), new_station(database_url, str(shared_place)), nobody)
     give_up_moving(folder)
     with open_library(folder, PASSPHRASE, "hk") as opened:
         assert everything_of(opened) == before
@@ -184,7 +185,7 @@ def test_a_row_that_changed_on_the_way_is_noticed(
 
     monkeypatch.setattr(moving, "copy_rows", spoilt)
     with pytest.raises(LibraryError, match="These tables differ: sessions"):
-        move_to_server(open_at(folder), new_station(database_url, str(shared_place)), silent)
+        move_to_server(open_at(folder), new_station(database_url, str(shared_place)), nobody)
     assert (folder / DATABASE).exists()
 
 
@@ -194,7 +195,7 @@ def test_a_server_with_another_library_is_refused(
     other = Library.create(tmp_path / "other", untouched.data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
     opened = OpenedLibrary(other, tmp_path / "other", untouched.data_key)
     with pytest.raises(LibraryError, match="The clinic's server already holds another library"):
-        move_to_server(opened, new_station(moved.database, str(shared_place)), silent)
+        move_to_server(opened, new_station(moved.database, str(shared_place)), nobody)
     other.close()
 
 
@@ -206,7 +207,7 @@ def test_a_shared_place_that_is_not_there_is_not_made_up_for(
     folder: Path, database_url: str, tmp_path: Path, open_at: OpenAt
 ) -> None:
     with pytest.raises(LibraryError, match="place of the clinic's recordings is not there"):
-        move_to_server(open_at(folder), new_station(database_url, str(tmp_path / "unmounted")), silent)
+        move_to_server(open_at(folder), new_station(database_url, str(tmp_path / "unmounted")), nobody)
     assert not (tmp_path / "unmounted").exists()
     with open_library(folder, PASSPHRASE, "hk"):
         pass

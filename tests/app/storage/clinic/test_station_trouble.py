@@ -29,9 +29,10 @@ from app.storage.opened import OpenedLibrary, made_beside, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.retention import destroy_recording
 from app.storage.stored import LibraryError, LibraryFaultError, ServerSilentError, StoredPatient
+from app.system.progress import nobody
 from core.findings import Finding, Severity
 from core.session import Recording, RecordingKind, Session
-from tests.app.storage.clinic.conftest import OpenAt, silent
+from tests.app.storage.clinic.conftest import OpenAt
 from tests.app.storage.clinic.silent_server import SilentServer
 from tests.app.storage.clinic.test_stations import Stations, found, read, record
 
@@ -207,9 +208,9 @@ def test_numbers_that_are_none_go_to_the_server_and_back(
     noticed = Finding("any", Severity.INFO, "here", {"a": float("nan"), "b": float("inf")})
     opened = open_at(folder)
     opened.library.sessions.create(patient_of(opened).id, Session((), findings=(noticed,), is_simulated=True))
-    move_to_server(opened, new_station(database_url, str(shared_place)), silent)
+    move_to_server(opened, new_station(database_url, str(shared_place)), nobody)
     station = open_at(folder)
-    bring_back(station, tmp_path / "back", silent)
+    bring_back(station, tmp_path / "back", nobody)
     for one in (station, open_at(tmp_path / "back")):
         visits = [one.library.sessions.get(line.id) for line in one.library.sessions.list()]
         (numbers,) = [visit.details.findings[0].numbers for visit in visits if visit.details.findings]
@@ -222,7 +223,7 @@ def test_text_that_no_server_takes_is_named_before_anything_is_moved(
     opened = open_at(folder)
     opened.library.patients.change(patient_of(opened), replace(patient_of(opened).details, aids="a\0b"))
     with pytest.raises(LibraryError, match=f"NUL.*patients.aids {patient_of(opened).id}"):
-        move_to_server(opened, new_station(database_url, str(shared_place)), silent)
+        move_to_server(opened, new_station(database_url, str(shared_place)), nobody)
     assert list(shared_place.iterdir()) == []
     opened.library.patients.change(patient_of(opened), replace(patient_of(opened).details, aids="a b"))
 
@@ -259,22 +260,22 @@ def test_a_move_that_may_have_opened_the_server_is_not_given_up(
     with monkeypatch.context() as patched:
         patched.setattr(moving, "become_station", killed)
         with pytest.raises(KeyboardInterrupt):
-            move_to_server(open_at(folder), station, silent)
+            move_to_server(open_at(folder), station, nobody)
     with pytest.raises(LibraryError, match="Continue the move"):
         give_up_moving(folder)
-    move_to_server(open_at(folder), station, silent)
+    move_to_server(open_at(folder), station, nobody)
 
 
 def test_a_library_is_brought_back_into_one_folder_only(stations: Stations, tmp_path: Path) -> None:
     first, second = stations
-    bring_back(first, tmp_path / "back", silent)
+    bring_back(first, tmp_path / "back", nobody)
     for station, folder in ((second, "back"), (second, "other"), (first, "other")):
         target = tmp_path / folder
         with pytest.raises(LibraryError, match=r"another folder|This folder is not empty"):
-            bring_back(station, target, silent)
+            bring_back(station, target, nobody)
     assert not (tmp_path / "other").exists()
     moving.give_up_bringing_back(first.library.database)
-    bring_back(second, tmp_path / "other", silent)
+    bring_back(second, tmp_path / "other", nobody)
 
 
 def test_what_was_begun_while_it_is_brought_back_is_noticed(
@@ -288,14 +289,14 @@ def test_what_was_begun_while_it_is_brought_back_is_noticed(
 
     monkeypatch.setattr(moving, "made_beside", begun_meanwhile)
     with pytest.raises(LibraryError, match="recordings are running or not yet transferred from a workstation"):
-        bring_back(first, tmp_path / "back", silent)
+        bring_back(first, tmp_path / "back", nobody)
     assert not (tmp_path / "back").exists()
     second.library.patients.change(patient_of(second), replace(patient_of(second).details, height_m=1.8))
 
 
 def test_nobody_logs_in_or_changes_a_passphrase_on_a_server_that_was_left(stations: Stations, tmp_path: Path) -> None:
     first, second = stations
-    bring_back(first, tmp_path / "back", silent)
+    bring_back(first, tmp_path / "back", nobody)
     second.library.is_to_be_moved = False  # it was opened to work with
     with pytest.raises(LibraryError, match="no longer on the clinic's server"):
         second.library.log_in("hk")

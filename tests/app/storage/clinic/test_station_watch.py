@@ -21,6 +21,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
 from app.workers import library_watch
 from app.workers.library_controller import LibraryController
+from app.workers.library_state import Unlocked
 from core.session import Patient, Session
 from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt
 from tests.app.storage.clinic.test_stations import record
@@ -80,7 +81,7 @@ def _listens_often(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def controller(qtbot: QtBot, moved: Station, folder: Path) -> Iterator[LibraryController]:
     controller = LibraryController()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(folder, PASSPHRASE, "hk")
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
     yield controller
     controller.finish()
 
@@ -145,9 +146,9 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
     server.stop()
     try:
         with qtbot.waitSignals([controller.not_opened, controller.can_work_away], timeout=WAIT_MS):
-            controller.open(folder, PASSPHRASE, "hk")
+            controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
         with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-            controller.open_away(folder, PASSPHRASE, "hk")
+            controller.open(lambda holder: holder.open_away(folder, PASSPHRASE, "hk"))
         assert controller.state is not None
         assert controller.state.is_away
         away = opened_of(controller)
@@ -167,7 +168,7 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
         server.start()
     qtbot.waitUntil(lambda: spy.count == 1, timeout=WAIT_MS)
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(folder, PASSPHRASE, "hk")
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
     assert controller.state is not None
     assert (controller.state.is_away, controller.state.brought_from_away) == (False, 1)
     assert len(other.library.sessions.get(visit.id).recordings) == 1
@@ -187,9 +188,9 @@ class _Received(QObject):
 
     def unlock(self, controller: LibraryController, done: Callable[[], object]) -> None:
         self._done = done
-        controller.unlock("hk", PASSPHRASE, None, self._on_unlocked, self._on_refused, self)
+        controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, None), self._on_unlocked, self._on_refused, self)
 
-    def _on_unlocked(self, _nothing: None) -> None:
+    def _on_unlocked(self, _unlocked: Unlocked) -> None:
         self._done()
 
     def _on_refused(self, what: str, remedy: str) -> None:

@@ -27,10 +27,11 @@ from app.storage.opened import OpenedLibrary, slots_of
 from app.storage.recovery import adopt_home, find_interrupted
 from app.storage.retention import destroy_recording
 from app.storage.stored import ChangedMeanwhileError, LibraryError, RecordingState, StoredJournal, StoredRecording
+from app.system.progress import nobody
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind
 from devices.source import SourceInfo
-from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, Login, OpenAt, change_row, silent
+from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, Login, OpenAt, change_row
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 
@@ -89,7 +90,7 @@ def test_what_one_station_recorded_the_other_reads_once_it_was_handed_over(
     (journal,) = found(second, walk).journals
     assert (shared_place / journal.kept_as).read_bytes() == (second.folder / "cache" / journal.file).read_bytes()
     visit = second.library.sessions.get(session_id)
-    assert len(session_with_samples(second, visit, {}, silent).recordings) == 4
+    assert len(session_with_samples(second, visit, {}, nobody).recordings) == 4
 
 
 def test_what_is_still_being_recorded_is_not_handed_over(stations: Stations, session_id: UUID) -> None:
@@ -109,7 +110,7 @@ def test_what_was_recorded_while_the_server_was_gone_is_handed_over_once(
     before = len(list(shared_place.iterdir()))
     walk = record(first, session_id, "walk 2", has_row=False)
     (orphan,) = [one for one in find_interrupted(first) if one.is_orphan]
-    adopt_home(first, orphan, silent)
+    adopt_home(first, orphan, nobody)
     assert hand_over(first) == {walk}
     assert [one for one in find_interrupted(first) if one.is_orphan] == []
     read(second, walk)
@@ -334,7 +335,7 @@ def test_a_readers_login_reads_is_noted_and_changes_nothing(
     reader = open_at(tmp_path / "third")
     (line,) = reader.library.sessions.list()
     visit = reader.library.sessions.view(line.id)
-    assert len(session_with_samples(reader, visit, {}, silent).recordings) == 3
+    assert len(session_with_samples(reader, visit, {}, nobody).recordings) == 3
     patient = reader.library.patients.find("DEMO-1")
     assert patient is not None
     with pytest.raises(LibraryError, match="The clinic's server does not permit this action for this workstation"):

@@ -14,7 +14,7 @@ from app.storage.journal.writer import JournalWriter
 from core.body import Site
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
 from devices.source import SensorCounts, SourceInfo
 from tests.safety.journal_material import (
     ID,
@@ -30,6 +30,7 @@ from tests.safety.journal_material import (
     line,
     record_some,
 )
+from tests.simulated import session_of
 
 DECODERS = {"lines": LineDecoder}
 
@@ -74,7 +75,7 @@ def assert_same_block(one: ImuBlock, other: ImuBlock) -> None:
 
 
 def test_the_walkers_recording_comes_back_bit_for_bit(tmp_path: Path) -> None:
-    walk = next(r for r in simulate(DEMONSTRATION).session.recordings if r.kind is RecordingKind.FREE_MOTION)
+    walk = next(r for r in session_of(DEMONSTRATION).recordings if r.kind is RecordingKind.FREE_MOTION)
     sites = list(walk.imu)
     blocks = [replace(walk.imu[site], sensor=f"w-{k}") for k, site in enumerate(sites)]
     info = SourceInfo("walker", "1", sensors=tuple(one.sensor for one in blocks), is_simulated=True)

@@ -5,7 +5,7 @@ import itertools
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -29,16 +29,9 @@ from tests.safety.journal_material import (
     read_all,
     record_some,
 )
+from tests.waiting import wait_for
 
 PATIENCE_S = 20.0
-
-
-def wait_for(is_so: Callable[[], bool]) -> None:
-    """Give the journal's thread time, for as long as a busy machine may need."""
-    give_up_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.002)
 
 
 class Disk:

@@ -16,7 +16,7 @@ from app.storage.journal.disk import Room
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, StoredSession
-from app.system.progress import Report
+from app.system.progress import Report, nobody
 from core.session import Patient, Session
 from tests.app.batch_material import results_in, swinging_session
 
@@ -31,7 +31,7 @@ def visits(opened: OpenedLibrary) -> list[UUID]:
     """Two sessions of one patient."""
     patient = Patient(code="MUSTER-7", birth_year=1980)
     reported = [replace(swinging_session(seed, patient), notes="Anna", operator="hk") for seed in (1, 2)]
-    return [import_session(opened, one, silent, room=ANY_ROOM).session_id for one in reported]
+    return [import_session(opened, one, nobody, room=ANY_ROOM).session_id for one in reported]
 
 
 @pytest.fixture
@@ -44,10 +44,6 @@ def run_batch(opened: OpenedLibrary, tmp_path: Path) -> RunBatch:
         return cli.main(["batch", "library", "--out", str(out), *key, *(more or BARE)])
 
     return run
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def exported(opened: OpenedLibrary) -> list[str]:

@@ -8,18 +8,16 @@ import pytest
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Limits, StoredSession
+from app.system.progress import nobody
 from app.wizard.resuming import current_course_key, read_analysed
 from core.body import Joint, Side, Site
 from core.session import Patient, Session
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
+from tests.simulated import session_of
 
 SHOES = course((walked(), "shoes"))
 STICK = course((walked(), "shoes, stick"))
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 @pytest.fixture(scope="module")
@@ -27,14 +25,14 @@ def reported() -> Session:
     """A walk of one leg, short, with a condition."""
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    found = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    found = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     recordings = (found.recordings[0], replace(found.recordings[1], condition="shoes"))
     return replace(found, recordings=recordings, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
 
 
 @pytest.fixture
 def visit(opened: OpenedLibrary, reported: Session) -> StoredSession:
-    return opened.library.sessions.get(import_session(opened, reported, silent).session_id)
+    return opened.library.sessions.get(import_session(opened, reported, nobody).session_id)
 
 
 def corrected(opened: OpenedLibrary, visit: StoredSession, change: Callable[[Session], Session]) -> None:
@@ -110,7 +108,7 @@ def test_other_code_computes_it_again(monkeypatch: pytest.MonkeyPatch, visit: St
 
 
 def test_a_session_that_is_evaluated_gives_its_course(opened: OpenedLibrary, visit: StoredSession) -> None:
-    read_analysed(opened, visit.id, silent)
+    read_analysed(opened, visit.id, nobody)
     ((key, found),) = opened.library.courses.find([visit.id]).values()
     assert key == current_course_key(opened.library.sessions.get(visit.id))
     (condition,) = found.conditions

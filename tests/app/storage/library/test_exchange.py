@@ -20,22 +20,20 @@ from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed, age_in_words
 from app.storage.stored import LibraryError, RecordingState
+from app.system.progress import nobody
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.findings import Finding, Severity
 from core.goals import Goal, GoalOf
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
+from tests.simulated import session_of
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 NAMES = [f"Kowalczyk-{number:03d}" for number in range(200)]
 ODD = {"note_of_clinic": "kept", "table": {"deep": [1, 2, {"deeper": True}]}, "figure": 1.25}
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def same_bits(one: NDArray[Any] | None, other: NDArray[Any] | None) -> bool:
@@ -64,15 +62,15 @@ def assert_same(one: Session, other: Session) -> None:
 
 
 def in_and_out(opened: OpenedLibrary, session: Session) -> Session:
-    imported = import_session(opened, session, silent, room=ANY_ROOM)
-    return session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, silent)
+    imported = import_session(opened, session, nobody, room=ANY_ROOM)
+    return session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, nobody)
 
 
 @pytest.fixture(scope="module")
 def walked() -> Session:
     """The simulated patient: two of six sensors with orientation and magnetic field, gaps, odd keys and columns."""
     recordings = (Standing(), FreeMotion(), Walk(strides=6))
-    session = simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    session = session_of(WalkerSettings(seed=5, recordings=recordings))
     rng = np.random.default_rng(5)
     changed = []
     for recording in session.recordings:
@@ -115,7 +113,7 @@ def test_the_simulated_patient_comes_back_bit_for_bit_by_way_of_folders(
 ) -> None:
     write_session(walked, tmp_path / "first")
     session = read_session(tmp_path / "first")
-    imported = import_session(opened, session, silent, room=ANY_ROOM)
+    imported = import_session(opened, session, nobody, room=ANY_ROOM)
     write_folder(opened, imported.session_id, tmp_path / "second", {}, is_identified=True)
     assert_same(session, read_session(tmp_path / "second"))
     first, second = (sorted((tmp_path / name).rglob("*.csv")) for name in ("first", "second"))
@@ -262,7 +260,7 @@ def small(session: Session) -> Session:
 def test_an_export_states_no_name_unless_it_is_asked_to(opened: OpenedLibrary, walked: Session, tmp_path: Path) -> None:
     pseudonyms = set()
     for number, name in enumerate(NAMES[:8]):
-        imported = import_session(opened, named(small(walked), name), silent, room=ANY_ROOM)
+        imported = import_session(opened, named(small(walked), name), nobody, room=ANY_ROOM)
         folder = tmp_path / f"out{number}"
         write_folder(opened, imported.session_id, folder, {})
         assert not [one for one in [*NAMES, "2026-11-20", "Keller"] if one in everything_in(folder)]
@@ -330,18 +328,18 @@ def test_a_session_without_a_code_needs_one_and_a_simulated_one_needs_a_simulate
     opened: OpenedLibrary, walked: Session
 ) -> None:
     with pytest.raises(LibraryError, match="needs a code"):
-        import_session(opened, replace(small(walked), patient=Patient()), silent, room=ANY_ROOM)
+        import_session(opened, replace(small(walked), patient=Patient()), nobody, room=ANY_ROOM)
     with pytest.raises(LibraryError, match="starts with DEMO"):
-        import_session(opened, small(walked), silent, code="P-001", room=ANY_ROOM)
+        import_session(opened, small(walked), nobody, code="P-001", room=ANY_ROOM)
     assert opened.library.sessions.list() == ()
-    imported = import_session(opened, small(walked), silent, code="demo 7".upper(), room=ANY_ROOM)
+    imported = import_session(opened, small(walked), nobody, code="demo 7".upper(), room=ANY_ROOM)
     assert imported.patient.details.code == "DEMO 7"
 
 
 def test_a_known_patient_stays_as_the_library_knows_it(opened: OpenedLibrary, walked: Session) -> None:
-    first = import_session(opened, small(walked), silent, room=ANY_ROOM)
+    first = import_session(opened, small(walked), nobody, room=ANY_ROOM)
     taller = replace(small(walked), patient=replace(walked.patient, height_m=1.9, sex="f"))
-    second = import_session(opened, taller, silent, room=ANY_ROOM)
+    second = import_session(opened, taller, nobody, room=ANY_ROOM)
     assert second.patient.id == first.patient.id
     assert second.differing == ("sex", "height_m")
     assert second.patient.details == first.patient.details
@@ -353,12 +351,12 @@ def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_reported_
 ) -> None:
     goal = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5), "H. Keller", note="bus")
     reported = replace(small(walked), patient=replace(walked.patient, goals=(goal,)))
-    first = import_session(opened, reported, silent, room=ANY_ROOM)
+    first = import_session(opened, reported, nobody, room=ANY_ROOM)
     assert first.patient.details.goals == (goal,)
-    assert import_session(opened, reported, silent, room=ANY_ROOM).differing == ()
+    assert import_session(opened, reported, nobody, room=ANY_ROOM).differing == ()
     other = replace(goal, value=1.4)
     second = import_session(
-        opened, replace(reported, patient=replace(reported.patient, goals=(other,))), silent, room=ANY_ROOM
+        opened, replace(reported, patient=replace(reported.patient, goals=(other,))), nobody, room=ANY_ROOM
     )
     assert second.differing == ("goals",)
     assert second.patient.details.goals == (goal,)
@@ -372,7 +370,7 @@ def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_reported_
 def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_stated(
     opened: OpenedLibrary, walked: Session, tmp_path: Path
 ) -> None:
-    imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
+    imported = import_session(opened, small(walked), nobody, room=ANY_ROOM)
     first, second, _ = opened.library.sessions.get(imported.session_id).recordings
     opened.library.recordings.discard(first.id)
     (opened.recordings / second.journals[0].file).rename(tmp_path / "away")
@@ -386,23 +384,23 @@ def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_stated(
 
 
 def test_what_happened_to_a_recordings_file_is_reported(opened: OpenedLibrary, walked: Session) -> None:
-    imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
+    imported = import_session(opened, small(walked), nobody, room=ANY_ROOM)
     visit = opened.library.sessions.get(imported.session_id)
-    assert session_with_samples(opened, visit, {}, silent).findings == ()
+    assert session_with_samples(opened, visit, {}, nobody).findings == ()
     with (opened.recordings / visit.recordings[0].journals[0].file).open("ab") as file:
         file.write(b"more")
     changed = Finding("recording_changed", Severity.WARNING, "standing")
-    assert session_with_samples(opened, visit, {}, silent).findings == (changed,)
+    assert session_with_samples(opened, visit, {}, nobody).findings == (changed,)
     journal = visit.recordings[1].journals[0]
     opened.library.recordings.close(visit.recordings[1].id, RecordingState.RECOVERED, {1: journal.sha256})
     visit = opened.library.sessions.get(imported.session_id)
     recovered = Finding("recording_recovered", Severity.INFO, "free motion")
-    assert session_with_samples(opened, visit, {}, silent).findings == (changed, recovered)
+    assert session_with_samples(opened, visit, {}, nobody).findings == (changed, recovered)
 
 
 def test_a_session_with_a_pelvis_goes_in_and_out(opened: OpenedLibrary) -> None:
     settings = WalkerSettings(sites=(*LEG_SITES, Site.PELVIS), recordings=(Standing(), Walk(strides=2)))
-    session = simulate(settings).session
+    session = session_of(settings)
     again = in_and_out(opened, session)
     assert set(again.sensors) == {*LEG_SITES, Site.PELVIS}
     for one, other in zip(again.recordings, session.recordings, strict=True):
@@ -423,8 +421,8 @@ def test_what_an_import_found_is_in_the_library_and_in_every_export_without_name
         Finding("stamps_mended", Severity.WARNING, "Kowalczyk", {"Kowalczyk": 1}),
     )
     write_session(replace(small(walked), findings=found), tmp_path / "in")
-    imported = import_session(opened, read_session(tmp_path / "in"), silent, room=ANY_ROOM)
-    stored = session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, silent)
+    imported = import_session(opened, read_session(tmp_path / "in"), nobody, room=ANY_ROOM)
+    stored = session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, nobody)
     assert all(one in stored.findings for one in found)
     write_folder(opened, imported.session_id, tmp_path / "whole", {}, is_identified=True)
     assert all(one in read_session(tmp_path / "whole").findings for one in found)

@@ -35,16 +35,13 @@ from app.storage.recovery import adopt_home, find_interrupted
 from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost
 from app.storage.stored import LibraryBusyError, LibraryError, Operator, Role, StoredRecording
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE
 
 LEAVING = "another four short words"
 
 Record = Callable[..., StoredRecording]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 @pytest.fixture
@@ -74,7 +71,7 @@ def test_who_leaves_opens_nothing_new_with_an_old_copy_of_the_keys(
     record("walk 1")
     shutil.copy(opened.folder / KEYS, tmp_path / KEYS)
     before, old_samples = bytes(opened.data_key or b""), samples_of(opened)
-    changed = change_data_key(opened, ["hk"], silent)
+    changed = change_data_key(opened, ["hk"], nobody)
     stolen = KeySlots(tmp_path / KEYS).open("ab", LEAVING)
     assert bytes(stolen) == before != bytes(changed.data_key)
     with pytest.raises(KeyRefusedError):
@@ -100,7 +97,7 @@ def test_all_others_and_the_recovery_key_open_as_before(opened: OpenedLibrary, s
     slots.set_keyring_slot(opened.data_key, "hk", secret)
     slots.set_keyring_slot(opened.data_key, "ab", secret)
     text = slots.renew_recovery_key(opened.data_key)
-    changed = change_data_key(opened, ["hk", "cd"], silent)
+    changed = change_data_key(opened, ["hk", "cd"], nobody)
     assert changed.left_out == ()
     assert changed.recovery_key == ""
     assert slots.codes == ("hk", "cd")
@@ -119,11 +116,11 @@ def test_all_others_and_the_recovery_key_open_as_before(opened: OpenedLibrary, s
 def test_the_audit_goes_on_and_pseudonyms_stay(opened: OpenedLibrary, slots: KeySlots) -> None:
     first = derived_from(opened.data_key)
     end = opened.library.audit.verify().end
-    change_data_key(opened, ["hk"], silent)
+    change_data_key(opened, ["hk"], nobody)
     with open_library(opened.folder, PASSPHRASE) as again:
         assert again.library.pseudonyms_key == first.pseudonyms
         assert again.library.audit.verify(end).faults == ()
-        change_data_key(again, ["hk"], silent)
+        change_data_key(again, ["hk"], nobody)
     with open_library(opened.folder, PASSPHRASE) as again:
         assert again.library.pseudonyms_key == first.pseudonyms
         assert again.library.audit.verify(end).faults == ()
@@ -136,7 +133,7 @@ def test_a_backup_of_before_keeps_its_old_key_and_one_of_after_has_the_new(
     for name in ("backups", "later"):
         (tmp_path / name).mkdir()
     before = back_up(opened, tmp_path / "backups")
-    change_data_key(opened, ["hk"], silent)
+    change_data_key(opened, ["hk"], nobody)
     old_key = KeySlots(before.folder / KEYS).open("ab", LEAVING)
     assert restore(before.folder, tmp_path / "restored", old_key, "hk") == ()
     with open_library(opened.folder, PASSPHRASE) as again:
@@ -148,7 +145,7 @@ def test_a_key_is_not_changed_while_something_is_being_recorded(
 ) -> None:
     record("walk 1", is_stopped=False)
     with pytest.raises(LibraryError, match="is running or was not completed"):
-        change_data_key(opened, ["hk"], silent)
+        change_data_key(opened, ["hk"], nobody)
     assert slots.open("ab", LEAVING) == opened.data_key
 
 
@@ -164,20 +161,20 @@ def test_a_key_is_not_changed_while_a_recording_waits_to_come_home(
     ) as writer:
         writer.mark(Belonging(session_id, reported).text())
     with pytest.raises(LibraryGoneError):
-        change_data_key(opened, ["hk"], silent)
+        change_data_key(opened, ["hk"], nobody)
     (tmp_path / "renamed").rename(opened.folder)
     with pytest.raises(
         LibraryError, match="Recordings made while the library was unavailable are not in the library yet"
     ) as refused:
-        change_data_key(opened, ["hk"], silent)
+        change_data_key(opened, ["hk"], nobody)
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in refused.value.remedy
     assert slots.open("ab", LEAVING) == opened.data_key
     bring_home(opened)
     (home,) = find_interrupted(opened)
-    adopt_home(opened, home, silent)
+    adopt_home(opened, home, nobody)
     opened.shelter.made()  # that a folder was left over is in nobody's way
-    change_data_key(opened, ["hk"], silent)
+    change_data_key(opened, ["hk"], nobody)
     with open_library(opened.folder, PASSPHRASE) as again:
         assert samples_of(again)
 
@@ -185,7 +182,7 @@ def test_a_key_is_not_changed_while_a_recording_waits_to_come_home(
 def test_a_key_is_not_changed_under_another_program(opened: OpenedLibrary, slots: KeySlots) -> None:
     with open_library(opened.folder, PASSPHRASE, "hk") as other:
         with pytest.raises(LibraryBusyError, match="has the library open"):
-            change_data_key(opened, ["hk"], silent)
+            change_data_key(opened, ["hk"], nobody)
         assert other.library.audit.verify().faults == ()
     assert slots.open("ab", LEAVING) == opened.data_key
     with open_library(opened.folder, PASSPHRASE, "hk") as again:
@@ -213,7 +210,7 @@ def test_slots_of_the_first_format_open_and_become_new_ones(opened: OpenedLibrar
         slots.sealed_again(opened.data_key, DataKey(bytes(32)), ["hk", "ab"])
     assert slots.open("hk", PASSPHRASE) == opened.data_key
     assert slots.is_recovery_key_confirmed
-    changed = change_data_key(opened, ["hk", "ab"], silent)
+    changed = change_data_key(opened, ["hk", "ab"], nobody)
     assert changed.left_out == ("ab",)
     assert slots.open("hk", PASSPHRASE) == slots.open_with_recovery_key(changed.recovery_key) == changed.data_key
     assert not slots.is_recovery_key_confirmed
@@ -227,7 +224,7 @@ def test_to_a_public_key_that_an_outsider_put_there_nothing_is_sealed(opened: Op
     (planted,) = (s for s in json.loads((opened.folder / "other.json").read_bytes())["slots"] if s["code"] == "ab")
     content["slots"] = [planted if slot["code"] == "ab" else slot for slot in content["slots"]]
     path.write_text(json.dumps(content))
-    changed = change_data_key(opened, ["hk", "ab"], silent)
+    changed = change_data_key(opened, ["hk", "ab"], nobody)
     assert changed.left_out == ("ab",)
     with pytest.raises(KeyRefusedError):
         slots.open("ab", LEAVING)
@@ -243,7 +240,7 @@ def test_headers_that_a_kill_left_are_written_at_the_next_start(
 
     monkeypatch.setattr("app.storage.key_change.write_headers", fail)
     with pytest.raises(OSError, match="killed"):
-        change_data_key(opened, ["hk"], silent)
+        change_data_key(opened, ["hk"], nobody)
     with open_library(opened.folder, PASSPHRASE) as again:
         (recording,) = (recording for paths in find_segments(again.recordings).values() for recording in paths.values())
         row = again.library.recordings.known()
@@ -277,7 +274,7 @@ def test_a_kill_at_any_point_leaves_the_old_key_or_the_new_one(
         try:
             again = open_library(opened.folder, PASSPHRASE, "hk")
             sys.addaudithook(kill)
-            change_data_key(again, ["hk"], silent)
+            change_data_key(again, ["hk"], nobody)
         finally:
             os._exit(0)
     os.waitpid(child, 0)

@@ -20,9 +20,11 @@ from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.slots import Cost
 from app.storage.stored import Action, StoredRecording
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
+from tests.simulated import session_of
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -36,10 +38,6 @@ def key(tmp_path: Path) -> list[str]:
     file = tmp_path / "passphrase"
     file.write_text(f"{PASSPHRASE}\nanything\n", encoding="utf-8")
     return ["--passphrase-file", str(file)]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def test_recover_closes_what_was_interrupted_and_states_so(
@@ -130,8 +128,8 @@ def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
     opened: OpenedLibrary, tmp_path: Path, key: list[str]
 ) -> None:
     recordings = (Standing(), FreeMotion(), Walk(strides=6))
-    session = simulate(WalkerSettings(seed=3, recordings=recordings)).session
-    imported = import_session(opened, session, silent, room=Room(start_bytes=0, kept_bytes=0))
+    session = session_of(WalkerSettings(seed=3, recordings=recordings))
+    imported = import_session(opened, session, nobody, room=Room(start_bytes=0, kept_bytes=0))
     write_folder(opened, imported.session_id, tmp_path / "folder", {}, is_identified=True)
     by_folder, by_library = tmp_path / "one", tmp_path / "two"
     assert cli.main(["analyse", str(tmp_path / "folder"), "--out", str(by_folder), "--no-rrd"]) == 0

@@ -5,16 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.safety.planted_names import ENCODINGS, NAMES, PASSPHRASE, Search, kill_and_search, search_files
+from tests.driver import Found
+from tests.safety.planted_names import ENCODINGS, NAMES, PASSPHRASE, kill_and_search, search_files
 
 
 @pytest.mark.skipif(os.name == "nt", reason="SIGKILL is POSIX's")
 @pytest.mark.endurance
 def test_no_name_and_no_secret_is_found_after_a_kill(tmp_path: Path) -> None:
     search = kill_and_search(tmp_path, 6, seed=2)
-    assert search.found == []
     assert search.faults == []
-    assert search.files >= 30
+    assert search.count["files searched"] >= 30
 
 
 def test_the_search_finds_what_is_there(tmp_path: Path) -> None:
@@ -25,6 +25,6 @@ def test_the_search_finds_what_is_there(tmp_path: Path) -> None:
         (tmp_path / str(number)).write_bytes(b"\0" * number + content + b"\0")
     (tmp_path / NAMES[3]).write_bytes(b"")
     (tmp_path / "innocent").write_bytes(b"nobody")
-    search = Search()
+    search = Found()
     search_files(tmp_path, secrets, search)
-    assert len(search.found) == len(planted) + 1
+    assert len(search.faults) == len(planted) + 1

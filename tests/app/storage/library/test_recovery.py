@@ -18,16 +18,13 @@ from app.storage.journal.reader import JournalReader
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import adopt, adopt_home, find_interrupted, recover
 from app.storage.stored import Action, LibraryError, RecordingState, StoredRecording
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
 from devices.files.formats import read_trial
 from devices.files.site_files import read_site
 from tests.app.storage.library.conftest import SENSOR, samples
 
 Record = Callable[..., StoredRecording]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
@@ -42,7 +39,7 @@ def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
     assert found.stored.details.name == "walk 2"
     assert not found.is_orphan
     assert found.began_at is not None
-    recovered = recover(opened, found, silent)
+    recovered = recover(opened, found, nobody)
     assert recovered.stored.state is RecordingState.RECOVERED
     assert recovered.recorded_s == pytest.approx(found.recorded_s)
     assert path.read_bytes() == before
@@ -56,7 +53,7 @@ def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
 def test_what_a_kill_left_between_file_and_row_is_found(opened: OpenedLibrary, record: Record) -> None:
     record("walk 1", is_stopped=False, is_reported=False)
     (found,) = find_interrupted(opened)
-    recovered = recover(opened, found, silent)
+    recovered = recover(opened, found, nobody)
     (journal,) = recovered.stored.journals
     assert journal.wrapped_key == JournalReader(opened.recordings / journal.file, opened.data_key).header.wrapped_key
 
@@ -65,7 +62,7 @@ def test_a_row_without_any_journal_is_closed_as_empty(opened: OpenedLibrary, ses
     opened.library.recordings.start(session_id, Recording("walk 1", RecordingKind.WALKING, "walk_1", {}), False)
     (found,) = find_interrupted(opened)
     assert (found.began_at, found.recorded_s, found.problem) == (None, 0.0, "")
-    assert recover(opened, found, silent).stored.state is RecordingState.RECOVERED
+    assert recover(opened, found, nobody).stored.state is RecordingState.RECOVERED
     assert find_interrupted(opened) == ()
 
 
@@ -76,7 +73,7 @@ def test_a_recording_that_only_its_row_does_not_know_as_stopped_is_closed(
     record("walk 1")
     monkeypatch.undo()
     (found,) = find_interrupted(opened)
-    assert recover(opened, found, silent).stored.state is RecordingState.CLOSED
+    assert recover(opened, found, nobody).stored.state is RecordingState.CLOSED
 
 
 def test_an_orphan_is_listed_until_somebody_states_where_it_belongs(
@@ -88,10 +85,10 @@ def test_an_orphan_is_listed_until_somebody_states_where_it_belongs(
     assert found.is_orphan
     assert found.recording_id == left.id
     with pytest.raises(ValueError, match="adopt it"):
-        recover(opened, found, silent)
+        recover(opened, found, nobody)
     with pytest.raises(LibraryError, match="of this name"):
-        adopt(opened, found, session_id, Recording("walk 1", RecordingKind.WALKING, "walk_1", {}), silent)
-    recovered = adopt(opened, found, session_id, Recording("walk 9", RecordingKind.WALKING, "walk_9", {}), silent)
+        adopt(opened, found, session_id, Recording("walk 1", RecordingKind.WALKING, "walk_1", {}), nobody)
+    recovered = adopt(opened, found, session_id, Recording("walk 9", RecordingKind.WALKING, "walk_9", {}), nobody)
     assert recovered.stored.id == left.id
     assert recovered.stored.placement is not None
     assert find_interrupted(opened) == ()
@@ -107,7 +104,7 @@ def test_an_orphan_goes_into_the_session_that_it_was_begun_in(
     record("walk 2")
     found = find_interrupted(opened)
     assert [one.belonging is not None for one in found] == [True, True]
-    recovered = [adopt_home(opened, one, silent).stored for one in found]
+    recovered = [adopt_home(opened, one, nobody).stored for one in found]
     assert [(one.details.name, one.details.folder, one.details.condition) for one in recovered] == [
         ("walk 1", "walk_1", "barefoot"),
         ("walk 3", "walk_3", "barefoot"),
@@ -123,8 +120,8 @@ def test_an_orphan_of_no_session_is_exported_and_stays(opened: OpenedLibrary, re
     found = find_interrupted(opened)
     for one in found:
         with pytest.raises(LibraryError):
-            adopt_home(opened, one, silent)
-        export_orphan(opened, one, tmp_path / str(one.recording_id), {}, silent)
+            adopt_home(opened, one, nobody)
+        export_orphan(opened, one, tmp_path / str(one.recording_id), {}, nobody)
     assert find_interrupted(opened) == found
     block, findings = read_site(tmp_path / str(silent_one.id) / "LT-1.csv", "", "", SENSOR, is_rate_derived=False)
     assert (len(block), findings) == (500, ())
@@ -140,7 +137,7 @@ def test_what_was_simulated_stays_so_when_its_files_are_imported(
 ) -> None:
     record("left over", is_stopped=False, has_row=False, is_simulated=is_simulated)
     (found,) = find_interrupted(opened)
-    export_orphan(opened, found, tmp_path / "files", {}, silent)
+    export_orphan(opened, found, tmp_path / "files", {}, nobody)
     assert read_trial("csv", [tmp_path / "files" / "LT-1.csv"], None).is_simulated is is_simulated
 
 
@@ -149,7 +146,7 @@ def test_an_export_that_was_broken_off_is_none(opened: OpenedLibrary, record: Re
     (found,) = find_interrupted(opened)
     (tmp_path / "a file").touch()
     with pytest.raises(OSError, match="a file"):
-        export_orphan(opened, found, tmp_path / "a file", {}, silent)
+        export_orphan(opened, found, tmp_path / "a file", {}, nobody)
     assert opened.library.audit.entries(about("recording", found.recording_id))
     assert not was_exported(opened, found)
 
@@ -171,7 +168,7 @@ def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UU
         )
     before = {one.id: one.version for one in opened.library.sessions.get(session_id).recordings}
     for one in (second, first):
-        adopt_home(opened, one, silent)
+        adopt_home(opened, one, nobody)
     session = opened.library.sessions.get(session_id)
     assert [one.details.name for one in session.recordings] == ["walk 1", "walk 2", "walk 3", "walk 4"]
     assert [one.version for one in session.recordings if one.id in before] == list(before.values())
@@ -201,10 +198,10 @@ def test_what_cannot_be_recovered_stays_open_and_states_what_to_do(
     assert found.problem
     assert found.remedy == RESTORE
     with pytest.raises(JournalRefusedError):
-        recover(opened, found, silent)
+        recover(opened, found, nobody)
     path.write_bytes(content)  # restored
     (found,) = find_interrupted(opened)
-    recover(opened, found, silent)
+    recover(opened, found, nobody)
     assert find_interrupted(opened) == ()
 
 
@@ -226,7 +223,7 @@ def test_a_long_torn_tail_is_read_past(opened: OpenedLibrary, record: Record) ->
         file.write(b"\xa7GWr" * 50_000)
     (found,) = find_interrupted(opened)
     assert found.recorded_s == whole.recorded_s
-    assert recover(opened, found, silent).reports[0].damaged_bytes >= 200_000
+    assert recover(opened, found, nobody).reports[0].damaged_bytes >= 200_000
 
 
 def test_progress_is_reported_and_a_stop_leaves_the_recording_open(opened: OpenedLibrary, record: Record) -> None:

@@ -204,7 +204,7 @@ def test_positions_can_be_checked_and_kept_as_they_are(
 def test_a_position_that_is_changed_by_hand_ends_the_doubt(visit: Visit, moved: FreeMotionStep) -> None:
     visit.sensors.doubt(MIXED)
     visit.sensors.assign(visit.sensors.sensor_at[THIGH], SHANK)
-    assert not moved.labels.is_in_doubt
+    assert not moved.is_in_doubt
 
 
 def test_sensors_left_to_the_motion_after_it_are_found_by_another(visit: Visit, moved: FreeMotionStep) -> None:

@@ -7,7 +7,8 @@ from app.wizard.free_motion.estimator import FreeMotionEstimator, FreeMotionView
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import ImuBlock
-from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks
+from tests.core.cut_blocks import part_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -31,7 +32,7 @@ def assert_same(one: FreeMotionState, two: FreeMotionState) -> None:
 
 
 def shortened(dressed: Worn, from_s: float, to_s: float) -> dict[str, ImuBlock]:
-    return {name: between(block, from_s, to_s) for name, block in dressed.free_motion.items()}
+    return {name: part_of(block, from_s, to_s) for name, block in dressed.free_motion.items()}
 
 
 def exchanged(dressed: Worn, one: Site, other: Site) -> dict[str, Site]:
@@ -139,11 +140,11 @@ def test_a_word_that_is_undone_places_nobody(dressed: Worn) -> None:
 def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(dressed: Worn) -> None:
     right = {name: dressed.live_sensors[name] for name, site in dressed.site_of.items() if site.side is Side.RIGHT}
     estimator = UnplacedFreeMotionEstimator(right, Side.LEFT)
-    streams = {name: between(dressed.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
+    streams = {name: part_of(dressed.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
     assert fed(estimator, streams)[-1].is_side_open
     assert not estimator.state.site_of
     estimator.name_leg((next(iter(right)), Side.RIGHT))
-    later = {name: between(dressed.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
+    later = {name: part_of(dressed.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
     assert fed(estimator, later)[-1].site_of == {name: dressed.site_of[name] for name in right}
 
 

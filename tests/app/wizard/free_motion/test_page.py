@@ -10,7 +10,6 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessible
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import load_fonts, set_dark
 from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.widgets.hip_gauge import hip_face
@@ -35,8 +34,6 @@ def view(**faces: GaugeFace) -> FreeMotionFace:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
-    load_fonts()
-    set_dark(False)
     page = FreeMotionPage()
     qtbot.addWidget(page)
     page.resize(1064, 600)
@@ -111,13 +108,15 @@ def test_only_the_gauge_that_reads_otherwise_is_painted(page: FreeMotionPage) ->
 
 
 def test_what_the_motion_contradicts_is_asked_in_the_page(qtbot: QtBot, page: FreeMotionPage) -> None:
-    page.ask("Left thigh and shank seem swapped.", "Swap them, or keep the positions.", ("Swap them", "Keep positions"))
+    page.question.ask(
+        "Left thigh and shank seem swapped.", "Swap them, or keep the positions.", ("Swap them", "Keep positions")
+    )
     assert page.question.isVisible()
     for number, button in enumerate(page.question.buttons):
-        with qtbot.waitSignal(page.answered) as answered:
+        with qtbot.waitSignal(page.question.answered) as answered:
             button.click()
         assert answered.args == [number]
-    page.ask("")
+    page.question.ask("")
     assert page.question.isHidden()
 
 

@@ -355,14 +355,14 @@ def test_sensors_that_are_mixed_up_are_detected_and_one_key_puts_them_right(
 ) -> None:
     visit.sensors.assign_all({name: mixed.get(site, site) for name, site in worn.items()})
     step.enter()
-    ticks(qtbot, step, lambda: step.labels.is_in_doubt)
+    ticks(qtbot, step, lambda: step.is_in_doubt)
     press(step)
     assert visit.sensors.site_of == worn
     assert visit.recordings.is_recording
     ticks(qtbot, step, lambda: knows(step))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         press(step)
-    assert not step.labels.is_in_doubt
+    assert not step.is_in_doubt
 
 
 def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_library(
@@ -404,21 +404,21 @@ def test_two_legs_that_begin_together_are_reported_apart_by_asking(
     together = chains(*shanks)
     question, unplaced = step.page.question, step._unplaced
     assert unplaced is not None
-    step.labels.ask_for_side(together)
+    step.ask_for_side(together)
     assert question.notice.text == f"Both legs moved at once. Which leg has {shanks[0]} on the shank?"
-    step.page.answered.emit(1)
-    assert step.labels.named is None  # the library knows it of the left leg
+    step.page.question.answered.emit(1)
+    assert step.question.reported is None  # the library knows it of the left leg
     assert question.notice.text == f"{shanks[0]} was on the left leg before. Which leg is it on now?"
-    step.page.answered.emit(1)
+    step.page.question.answered.emit(1)
     assert unplaced._answer == (shanks[0], Side.RIGHT)
     for _ in range(3):
-        step.labels.ask_for_side(together)  # the estimator has not taken it yet
+        step.ask_for_side(together)  # the estimator has not taken it yet
     assert question.notice.text == f"{shanks[0]} is now assigned to the right leg."
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
-    step.page.answered.emit(1)
-    assert step.labels.named is None
+    step.page.question.answered.emit(1)
+    assert step.question.reported is None
     assert "Both legs moved at once" in question.notice.text
-    step.page.answered.emit(0)
+    step.page.question.answered.emit(0)
     assert question.notice.text == f"{shanks[0]} is now assigned to the left leg."
 
 
@@ -429,12 +429,12 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     step.enter()
     ticks(qtbot, step, lambda: step._unplaced is not None)
     shank = f"DEMO-{Site.LEFT_SHANK}"
-    step.labels.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
+    step.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
     for _ in range(2):  # the library knows it of the left leg
-        step.page.answered.emit(1)
+        step.page.question.answered.emit(1)
     visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then reports
     for number in (1, 0):
-        step.page.answered.emit(number)
+        step.page.question.answered.emit(number)
     assert visit.sensors.site_of == worn
     assert step.page.question.notice.text == f"{shank} is now assigned to the left leg."
     step._stop()

@@ -70,7 +70,7 @@ def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, s
     type_in(step, Patient(code="DEMO-9"))
     assert step.bar().note == "Not saved yet."  # half a code is nobody's
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
-        step.page.code_committed.emit()
+        step.page.code.committed.emit()
     assert step.bar().note == "Saved as you type."
     type_in(step, Patient(code="DEMO-9", mass_kg=82.0, device="knee K2  "))
     assert step.bar().note == "Not saved yet."

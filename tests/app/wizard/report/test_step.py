@@ -29,19 +29,19 @@ from app.wizard.report.printing import PRINTED_PPI
 from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
-from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
 from core.session import RecordingKind, Session
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
+from tests.simulated import analysis_of
 
 WAIT_MS = 60_000  # on a busy machine
 
 
 @pytest.fixture(scope="module")
 def analysis(simulated_session: Session) -> Analysis:
-    return analyse(simulated_session)
+    return analysis_of(simulated_session)
 
 
 @pytest.fixture
@@ -218,7 +218,7 @@ def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
         drawn.append((language, ppi))
         return []
 
-    monkeypatch.setattr("app.reports.patient.letter.letter_pages", pages)
+    monkeypatch.setattr("app.wizard.report.writing.letter_pages", pages)
     asked: list[str] = []
     monkeypatch.setattr(step.letter_printer, "ask", lambda name, _paper: asked.append(name))
     step.page.report.language.choose("de")
@@ -259,7 +259,7 @@ def test_a_file_that_was_not_written_is_named_with_its_reason(
     qtbot: QtBot, step: ReportStep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lines = ["walk 1, mot: No angle of it can be given as a pose."]
-    monkeypatch.setattr("app.exports.exports.export_from_library", lambda *_, **__: lines)
+    monkeypatch.setattr("app.wizard.report.writing.export_from_library", lambda *_, **__: lines)
     reported: list[tuple[str, str]] = []
     step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
     step.page.report.formats.choose(["mot"])

@@ -13,12 +13,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import STRIDES
 from app.results.thin_line import ThinLine
+from app.results.tools_row import STRIDES
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
-from app.theme.current import load_fonts, set_dark
 from app.wizard import reviewing
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
@@ -31,10 +30,11 @@ from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind, Session
 from core.verdicts.measurement_error import ErrorSource
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
 from tests.app.library_answers import asked
 from tests.app.room import words_cut
 from tests.app.wizard.pressing import press
+from tests.simulated import session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -43,7 +43,7 @@ QUICK_S = 1.0  # of the processor, whatever else the machine does
 
 @pytest.fixture(scope="module")
 def one_walk() -> Session:
-    return simulate(DEMONSTRATION).session
+    return session_of(DEMONSTRATION)
 
 
 @pytest.fixture
@@ -60,8 +60,6 @@ def session_id(qtbot: QtBot, controller: LibraryController, one_walk: Session) -
 
 @pytest.fixture
 def step(qtbot: QtBot, qapp: QApplication, visit: Visit, session_id: UUID) -> ResultsStep:
-    load_fonts()
-    set_dark(False)
     step = ResultsStep(visit)
     with qtbot.waitSignals([visit.resumed, visit.evaluation.done], timeout=30_000):
         visit.resume(session_id)
@@ -166,7 +164,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     assert stated == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
-    step.page.correct().closed.emit()
+    step.page.correct().back.click()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
 
 

@@ -9,7 +9,8 @@ import pytest
 from app.wizard.sensors.estimator import PlacingEstimator, PlacingState
 from core.body import Side
 from core.samples import ImuBlock
-from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks
+from tests.core.cut_blocks import part_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -140,7 +141,7 @@ def test_standing_and_shaking_show_no_legs(dressed: Worn) -> None:
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, block_s: float) -> None:
     usual, other = PlacingEstimator(dressed.site_of), PlacingEstimator(dressed.site_of)
     # a look that is going on at the end gives nothing yet, unless one block brings all its steps
-    streams = {name: between(block, BEGIN_S, BEGIN_S + 21.9) for name, block in dressed.free_motion.items()}
+    streams = {name: part_of(block, BEGIN_S, BEGIN_S + 21.9) for name, block in dressed.free_motion.items()}
     name = next(iter(streams))
     streams[name] = shaken(streams[name], BEGIN_S + 20.5, BEGIN_S + 21.9)
     for estimator, size_s in ((usual, 0.03), (other, block_s)):

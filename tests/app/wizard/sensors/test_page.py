@@ -314,7 +314,7 @@ def test_without_a_source_five_are_offered_and_pressed_by_keys(page: SensorsPage
     assert received.args == ["serial"]
     page.show_searching("Serial ports")
     assert page.searching.isVisible()
-    with qtbot.waitSignal(page.stop_pressed, timeout=1000):
+    with qtbot.waitSignal(page.searching.stop.clicked, timeout=1000):
         QTest.keyClick(page.searching.stop, Qt.Key.Key_Space)
 
 
@@ -327,9 +327,9 @@ def test_rows_keep_the_focus_while_they_are_shown_again(page: SensorsPage) -> No
 
 def test_a_silent_sensor_is_looked_for_and_a_received_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
     page.show_sensors(rows(*LEG_SITES, s0A22={"silent_s": 4.0}))
-    with qtbot.waitSignal(page.reconnect_pressed, timeout=1000):
+    with qtbot.waitSignal(page.list.reconnect_pressed, timeout=1000):
         page.list.rows["0A22"].identify.click()
-    with qtbot.waitSignal(page.identify_pressed, timeout=1000):
+    with qtbot.waitSignal(page.list.identify_pressed, timeout=1000):
         assert page.identify_selected()
 
 

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
-from app.wizard.sensors.replays import Replays, replay_of
+from app.wizard.sensors.replays import offered, replay_of
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
@@ -90,10 +90,10 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
-    replays = Replays(controller, visit)
-    with qtbot.waitSignal(replays.listed, timeout=5000) as listed:
-        replays.list_sessions(line.id)
-    assert listed.args == [[]], "neither the session itself, nor one without recordings"
+    found: list[object] = []
+    controller.run(lambda opened: offered(opened, line.id), found.append, None, visit)
+    qtbot.waitUntil(lambda: bool(found), timeout=5000)
+    assert found == [[]], "neither the session itself, nor one without recordings"
 
 
 def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:

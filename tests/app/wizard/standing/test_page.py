@@ -37,7 +37,7 @@ def counting(still_s: float = 1.2, **more: object) -> StandStillView:
 @pytest.fixture
 def page(qtbot: QtBot) -> StandStillPage:
     page = StandStillPage()
-    page.show_zero(dict.fromkeys(LEG_JOINTS, 0.0))
+    page.zero.show_zero(dict.fromkeys(LEG_JOINTS, 0.0))
     qtbot.addWidget(page)
     page.resize(1064, 600)
     with qtbot.waitActive(page):
@@ -134,7 +134,7 @@ def test_an_angle_is_reported_with_its_joint_when_it_is_left(qtbot: QtBot, page:
     knee.setFocus()
     knee.selectAll()
     QTest.keyClicks(knee, "15")
-    with qtbot.waitSignal(page.zero_edited) as edited:
+    with qtbot.waitSignal(page.zero.edited) as edited:
         QTest.keyClick(knee, Qt.Key.Key_Tab)
     assert edited.args == [Joint.LEFT_KNEE, 15.0]
     assert page.zero.fields[Joint.RIGHT_KNEE].line_edit.hasFocus()  # L then R
@@ -144,11 +144,11 @@ def test_an_emptied_angle_is_reported_as_none_and_a_wrong_one_not_at_all(qtbot: 
     ankle = page.zero.fields[Joint.RIGHT_ANKLE].line_edit
     ankle.selectAll()
     QTest.keyClicks(ankle, "61")
-    with qtbot.assertNotEmitted(page.zero_edited):
+    with qtbot.assertNotEmitted(page.zero.edited):
         QTest.keyClick(ankle, Qt.Key.Key_Return)
     assert "\N{MINUS SIGN}60 to 60°" in ankle.accessibleName()
     ankle.clear()
-    with qtbot.waitSignal(page.zero_edited) as edited:
+    with qtbot.waitSignal(page.zero.edited) as edited:
         QTest.keyClick(ankle, Qt.Key.Key_Return)
     assert edited.args == [Joint.RIGHT_ANKLE, None]
 
@@ -158,13 +158,13 @@ def test_an_angle_being_typed_is_reported_when_the_page_goes(qtbot: QtBot, page:
     knee.setFocus()
     knee.selectAll()
     QTest.keyClicks(knee, "12")
-    with qtbot.waitSignal(page.zero_edited) as edited:
+    with qtbot.waitSignal(page.zero.edited) as edited:
         page.hide()
     assert edited.args == [Joint.LEFT_KNEE, 12.0]
 
 
 def test_a_joint_without_its_sensors_has_no_angle_and_states_so(page: StandStillPage) -> None:
-    page.show_zero({joint: 0.0 for joint in LEG_JOINTS if joint is not Joint.RIGHT_ANKLE})
+    page.zero.show_zero({joint: 0.0 for joint in LEG_JOINTS if joint is not Joint.RIGHT_ANKLE})
     assert [joint for joint, field in page.zero.fields.items() if not field.isEnabled()] == [Joint.RIGHT_ANKLE]
     assert page.zero.fields[Joint.RIGHT_ANKLE].text == ""
     assert "right ankle" in page.zero.why

@@ -144,8 +144,8 @@ def test_leaving_during_the_count_keeps_nothing(qtbot: QtBot, step: StandStillSt
 def test_the_goniometer_is_reported_in_radians_and_nought_is_the_standing_itself(
     qtbot: QtBot, step: StandStillStep, visit: Visit
 ) -> None:
-    step.page.zero_edited.emit(Joint.LEFT_KNEE, 15.0)
-    step.page.zero_edited.emit(Joint.RIGHT_KNEE, 0.0)
+    step.page.zero.edited.emit(Joint.LEFT_KNEE, 15.0)
+    step.page.zero.edited.emit(Joint.RIGHT_KNEE, 0.0)
     assert dict(visit.details.zero_rad) == {Joint.LEFT_KNEE: pytest.approx(np.deg2rad(15.0))}
     qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.details.zero_rad)
     step.enter()

@@ -415,7 +415,7 @@ def test_each_curve_states_what_may_be_read_of_it(page: WalkingPage, bench: Benc
 
 def test_the_next_change_is_reported_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
     card = page.bench.alignments
-    page.bench.reported.connect(lambda: page.bench.show_entry(bench.next_title))
+    card.reported.connect(lambda: card.show_entry(bench.next_title))
     assert card.written.text() == "Nothing changed yet."
     for name, key, times in (
         ("turns", Qt.Key.Key_Plus, 4),

@@ -64,9 +64,9 @@ def test_the_chooser_names_it_with_its_test_and_with_no_other(qtbot: QtBot) -> N
     chooser = TimedChooser()
     qtbot.addWidget(chooser)
     chooser.show_before({UP: "3 Oct: 11.4 s"})
-    assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go · 3 Oct: 11.4 s"
+    assert chooser.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go · 3 Oct: 11.4 s"
     chooser.show_before({TEN: "3 Oct: 1.00 m/s"})
-    assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go"
+    assert chooser.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go"
 
 
 def results(*times_s: float) -> TimedResultView:

@@ -13,7 +13,8 @@ from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.phases import Phase
 from core.results import AxisSource
 from core.samples import ImuBlock
-from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks, without
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks, without
+from tests.core.cut_blocks import part_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -121,8 +122,8 @@ def test_another_calibration_is_taken_at_the_next_update(dressed: Worn, usual: l
     settled = dressed.calibration[joint]
     provisional = replace(settled, axis_source=AxisSource.FREE_MOTION, zero_rad=settled.zero_rad + 0.2)
     estimator = WalkingEstimator(dressed.site_of, dressed.live_sensors, {**dressed.calibration, joint: provisional})
-    early = {name: between(block, BEGIN_S, BEGIN_S + 8.0) for name, block in dressed.walk.items()}
-    late = {name: between(block, BEGIN_S + 8.0, BEGIN_S + 99.0) for name, block in dressed.walk.items()}
+    early = {name: part_of(block, BEGIN_S, BEGIN_S + 8.0) for name, block in dressed.walk.items()}
+    late = {name: part_of(block, BEGIN_S + 8.0, BEGIN_S + 99.0) for name, block in dressed.walk.items()}
     assert fed(estimator, early)[-1].joints[joint].is_provisional
     estimator.recalibrate(joint, settled)
     assert estimator.state.joints[joint].is_provisional  # not yet

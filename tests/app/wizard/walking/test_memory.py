@@ -219,5 +219,5 @@ def test_sensors_strapped_again_are_live_before_they_stand_still(
     qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert visit.cannot_calibrate != ""
     with qtbot.waitSignal(step.jumped, timeout=WAIT_MS):
-        step.page.restrapped_pressed.emit()
+        step.page.walks.restrapped.click()
     assert visit.cannot_calibrate == ""

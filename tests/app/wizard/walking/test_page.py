@@ -51,7 +51,7 @@ def test_a_kept_walk_is_renamed_where_it_was_made(qtbot: QtBot, page: WalkingPag
     QTest.keyClicks(field.line_edit, "Own shoes")
     page.show_walks((replace(KEPT, strides=19), DISCARDED))  # counted meanwhile
     assert field.isVisible()
-    with qtbot.waitSignal(page.renamed) as renamed:
+    with qtbot.waitSignal(page.walks.renamed) as renamed:
         QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
     assert renamed.args == ["1", "Own shoes"]
     page.show_walks((replace(KEPT, label="Own shoes"), DISCARDED))
@@ -67,7 +67,7 @@ def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: Walki
         edit.click()
         field = page.walks.findChildren(Field)[0]
         QTest.keyClicks(field.line_edit, keys)
-        with qtbot.assertNotEmitted(page.renamed):
+        with qtbot.assertNotEmitted(page.walks.renamed):
             QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
         assert not field.isVisible()
 
@@ -81,7 +81,7 @@ def test_escape_takes_back_what_was_typed_as_a_name(qtbot: QtBot, page: WalkingP
     edit.click()
     field = page.walks.findChildren(Field)[0]
     QTest.keyClicks(field.line_edit, "Own shoes")
-    with qtbot.assertNotEmitted(page.renamed), qtbot.assertNotEmitted(at_window.activated):
+    with qtbot.assertNotEmitted(page.walks.renamed), qtbot.assertNotEmitted(at_window.activated):
         QTest.keyClick(field.line_edit, Qt.Key.Key_Escape)
     assert not field.isVisible()
     edit.click()
@@ -173,7 +173,7 @@ def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> No
     page.show_walks((KEPT, DISCARDED))
     (undo,) = [one for one in page.walks.buttons if one.accessibleName().startswith("Include")]
     assert undo.accessibleName() == "Include B Shoes again"
-    with qtbot.waitSignal(page.undo_pressed) as undone:
+    with qtbot.waitSignal(page.walks.undo_pressed) as undone:
         QTest.keyClick(undo, Qt.Key.Key_Return)
     assert undone.args == ["2"]
 
@@ -266,7 +266,7 @@ def test_sensors_strapped_again_begin_a_letter(page: WalkingPage) -> None:
 def test_sensors_strapped_again_are_reported_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT,))
     assert "Standing still and free motion must then be repeated." in page.walks.restrapped.accessibleDescription()
-    with qtbot.waitSignal(page.restrapped_pressed):
+    with qtbot.waitSignal(page.walks.restrapped.clicked):
         QTest.keyClick(page.walks.restrapped, Qt.Key.Key_Return)
 
 

@@ -310,7 +310,7 @@ def test_who_left_before_the_sensors_were_live_again_is_not_fetched_back(
     qtbot: QtBot, step: WalkingStep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(WornSensors, "are_in_memory", True)
-    step.page.restrapped_pressed.emit()
+    step.page.walks.restrapped.click()
     step.leave()
     with qtbot.assertNotEmitted(step.jumped):
         step.memory.lives.emit()  # as when walks are sent live on the sensors' step

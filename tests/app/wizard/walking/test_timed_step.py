@@ -13,9 +13,10 @@ from app.wizard.walking.step import WalkingStep
 from core.body import Site
 from core.session import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.simulated import session_of
 
 RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
 
@@ -25,7 +26,7 @@ def simulated_session() -> Session:
     """A patient who is a while before each walk."""
     walk = Walk(strides=14, standing_before_s=3.0)
     played = (Standing(duration_s=10.0), walk, replace(walk, name="walk 2"))
-    return simulate(replace(DEMONSTRATION, recordings=played)).session
+    return session_of(replace(DEMONSTRATION, recordings=played))
 
 
 @pytest.fixture
@@ -62,7 +63,7 @@ def is_for_clicker(step: WalkingStep) -> bool:
 @pytest.mark.endurance
 def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     assert step.on_intent(NEXT_TEST)
-    assert step.page.next.test.box.currentText() == "10-metre walk"
+    assert step.page.next.test.currentText() == "10-metre walk"
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):  # which stops by itself
         step.on_intent(RUN)
         qtbot.waitUntil(lambda: step.page.timed.isVisible(), timeout=PATIENCE_MS)
@@ -118,7 +119,7 @@ def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step:
     assert "time not measured" in step.page.timed_result.first.text()
     for _ in TimedProtocol:
         step.on_intent(NEXT_TEST)
-    assert step.page.next.test.box.currentIndex() == 0
+    assert step.page.next.test.currentIndex() == 0
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     assert not step.takes_clicker

@@ -12,9 +12,10 @@ from app.widgets.action_bar import BarAction
 from app.wizard.visit import Visit
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_start import WalkStart
-from app.wizard.walking.walking_bar import WalkingBar, Walks
+from app.wizard.walking.walking_bar import WalkingBar
 from app.wording.recordings import shown_names
 from core.session import Recording, RecordingKind
 from core.timed.protocols import PlannedTest, TimedProtocol
@@ -66,7 +67,7 @@ def bar(visit: Any, walks: SimpleNamespace, bench: Bench, timed: SimpleNamespace
     memory = SimpleNamespace(bar=lambda: None, quiet=lambda *, wants_live: SYNCHRONISE)
     start = SimpleNamespace(is_possible=False, missing_now="")
     return WalkingBar(
-        cast("Walks", walks),
+        cast(WalkingStep, walks),
         visit,
         cast("WalkStart", start),
         bench,

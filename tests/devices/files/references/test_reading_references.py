@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from core.body import Joint, Side
-from devices.files.answers import Array, BrokenAnswerError
+from devices.files.answers import Array, BrokenAnswerError, details_of
 from devices.files.limited_reader import LimitedReader, LimitedReading
 from devices.files.references import c3d_angles
-from devices.files.references.answers import details_of_reference, reference_from
+from devices.files.references.answers import reference_from
 from devices.files.references.markers import angles_of_markers, landmark_of
 from devices.files.references.reading import read_reference
 from devices.files.references.trial import ReferenceFile, joint_of_name
@@ -333,7 +333,7 @@ def test_an_answer_that_no_reader_gives_is_not_believed(tmp_path: Path) -> None:
     path = tmp_path / "reference"
     path.write_text(csv_of("time_s,left_knee", TIME_S, KNEE_DEG), encoding="utf-8")
     arrays: list[Array] = []
-    details = details_of_reference(read_reference(path), arrays)
+    details = details_of(read_reference(path), arrays)
     assert reference_from(details, arrays).trials[0].angles.keys() == {Joint.LEFT_KNEE}
     (trial,) = details["trials"]
     for broken in (

@@ -1,0 +1,47 @@
+"""`gaitwright analyse`: the angles of a session, as a folder of results."""
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from app.cli.arguments import LibrarySession
+from app.cli.places import read_session
+from app.cli.progress import finding_lines
+from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
+from app.exports.result_folder import OWN_SESSION, check_place, written_beside
+from app.system.progress import Report
+from app.wording.body import name_of
+from core.results import Analysis, Method
+
+
+def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
+    """Write the results and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        The session cannot be read, or something else is at OUT.
+    OSError
+        OUT cannot be written.
+    """
+    place = args.library if isinstance(args.session, LibrarySession) else args.session
+    check_place(args.out, place)
+    session_is_inside = place.resolve() == args.out.resolve() / OWN_SESSION
+    with written_beside(args.out, keeps_session=session_is_inside) as folder:
+        report(0.0, str(args.session))
+        analysis = write_analysed(read_session(args, args.session, report), folder, choices_of(args), report)
+    yield from lines_of(analysis, args.out)
+
+
+def choices_of(args: argparse.Namespace) -> AnalysisChoices:
+    """What of an analysis the command line decides, here and in a batch."""
+    return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
+
+
+def lines_of(analysis: Analysis, out: Path) -> Iterator[str]:
+    """Say where the results are and what needs a look."""
+    joints = [joint for span in analysis.calibrations for joint in span.joints]
+    names = ", ".join(name_of(joint) for joint in dict.fromkeys(joints)) or "no joint"
+    count = len(analysis.recordings)
+    yield f"{out}: {names}; {count} {'recording' if count == 1 else 'recordings'}."
+    yield from finding_lines(analysis.findings, lowest="warning")

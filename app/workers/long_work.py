@@ -1,0 +1,28 @@
+"""What takes a while in the library, one at a time: home shows its title and how far it is until it ends."""
+
+from PySide6.QtCore import QObject, Signal
+
+from app.workers.library_controller import LibraryController
+
+
+class LongWork(QObject):
+    """"""
+
+    working = Signal(str)  # it began: its title
+    progressed = Signal(float, str)  # the share that is done, and what is being done
+
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
+        super().__init__(parent)
+        self._controller = controller
+        self.is_working = False
+
+    def stop(self) -> None:
+        """End what runs."""
+        raise NotImplementedError
+
+    def _begin(self, title: str) -> None:
+        self.is_working = True
+        self.working.emit(title)
+
+    def _on_progressed(self, share: float, what: str) -> None:
+        self.progressed.emit(share, what)

@@ -1,0 +1,33 @@
+"""Blocks of samples cut into shorter ones, as they arrive, and sessions some of whose blocks are spoilt."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from core.body import LEG_SITES, Site
+from core.samples import ImuBlock
+from core.session import Session
+
+Change = Callable[[ImuBlock], ImuBlock]
+
+
+def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
+    return block.select(slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist()))
+
+
+def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float) -> Iterator[dict[Site, ImuBlock]]:
+    """As they arrive: each as many seconds of every site."""
+    end_s = max(float(block.time_s[-1]) for block in imu.values())
+    for a, b in pairwise(np.arange(0.0, end_s + 2 * block_s, block_s)):
+        yield {site: part_of(block, a, b) for site, block in imu.items()}
+
+
+def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
+    """The session with the blocks of some sites (and of some recordings only) spoiled."""
+    recordings = []
+    for r in session.recordings:
+        imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
+        recordings.append(replace(r, imu=imu))
+    return replace(session, recordings=tuple(recordings))
