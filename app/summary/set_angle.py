@@ -15,9 +15,9 @@ from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, tr
 from core.alignment import AlignmentChange, NetChange, ProsthesisPart, changed_between
 from core.body import Side
+from core.verdicts.quantities import SHANK_TO_FOOT
 
-COLUMN = "shank_to_foot_in_swing_deg"
-MEASURE = Measure(COLUMN, NAMES[COLUMN])
+MEASURE = Measure(SHANK_TO_FOOT, NAMES[SHANK_TO_FOOT])
 SAGITTAL = (ProsthesisPart.FOOT_FRONT_SCREW, ProsthesisPart.FOOT_BACK_SCREW)
 
 

@@ -36,7 +36,7 @@ NEAR_DEG = 0.7
 
 
 def difference(walk: RecordingAnalysis, before: RecordingAnalysis) -> Difference:
-    """How much more the foot is plantarflexed than in the walk before, as the bench judges it; dorsiflexion is minus."""
+    """How much more the foot is dorsiflexed than in the walk before, as the bench judges it."""
     means = [
         mean_of_strides(values_of(one, Side.LEFT, COLUMN)[one.gait[Side.LEFT].strides.is_used])
         for one in (walk, before)

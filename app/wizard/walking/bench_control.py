@@ -8,6 +8,7 @@ from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.summary.numbers_in_words import fixed
+from app.summary.set_angle import set_angle, set_angle_in_words
 from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
@@ -163,7 +164,12 @@ class Bench(QObject):
             drawn,
             found,
             is_simulated,
+            self._set_angle(found, side) if found is not None else "",
         )
+
+    def _set_angle(self, found: Comparison, side: Side) -> str:
+        shown = set_angle(found, found.parts[1], found.against, side, self.chain.changes)
+        return set_angle_in_words(shown) if shown is not None else ""
 
     @property
     def next_title(self) -> str:

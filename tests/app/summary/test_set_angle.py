@@ -34,7 +34,7 @@ def words_of(shown: Part, base: Part, change: AlignmentChange | None) -> str:
     return set_angle_in_words(found) if found is not None else ""
 
 
-def test_what_was_set_stands_beside_what_is_measured() -> None:
+def test_what_was_set_is_shown_with_what_is_measured() -> None:
     """The foot points 2.8 deg further down: dorsiflexion is what the column counts."""
     assert words_of(part("B", 2.2, OF_B), part("A", 5.0), OF_B) == "Set 3.0° plantarflexion, measured 2.8° (±0.7°)."
 

@@ -175,6 +175,20 @@ def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(qtbot: QtB
     assert ("not compared" in stance) is is_biased
 
 
+def test_what_was_set_at_the_foot_is_shown_above_the_differences_and_nothing_where_nothing_is_known(
+    qtbot: QtBot, bench: Bench
+) -> None:
+    state = bench.state()
+    assert state is not None
+    differences = BenchDifferences()
+    qtbot.addWidget(differences)
+    differences.show_pair(state.found, Side.LEFT, "", "Set 2.0° plantarflexion, measured 1.8° (±0.7°).")
+    assert differences.set_angle.isVisibleTo(differences)
+    assert differences.set_angle.text() == "Set 2.0° plantarflexion, measured 1.8° (±0.7°)."
+    differences.show_pair(state.found, Side.LEFT, "")
+    assert not differences.set_angle.isVisibleTo(differences)
+
+
 def test_under_ten_strides_nothing_is_judged() -> None:
     outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
     assert (outcome, first) == (Outcome.OPEN, "B and A: too few strides to assess a change.")
