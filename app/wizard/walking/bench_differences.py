@@ -9,7 +9,7 @@ from app.widgets.card import Card
 from app.widgets.lay_out import lay_out
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
-from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
+from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.wording.alignment import NO_PROOF
 from app.wording.translation import tr
 from core.body import Side
@@ -31,21 +31,18 @@ class BenchDifferences(Card):
     def __init__(self) -> None:
         super().__init__(padding=PADDING)
         self.title = Text(size=16, weight=SEMIBOLD)
-        self.set_angle = Text(wraps=True, weight=MEDIUM)
         self.table = CellTable(tr("Differences"), row=ROW, head=HEAD)
         self.no_proof = Text(tr(NO_PROOF), size=12, tone="ink2", wraps=True)
-        lay_out(self.column, self.title, self.set_angle, self.table, 1, self.no_proof)
+        lay_out(self.column, self.title, self.table, 1, self.no_proof)
 
     @property
     def needed(self) -> int:
         """How wide it has to be, px of the screen."""
         return self.table.minimumWidth() + px(2 * PADDING + 2)
 
-    def show_pair(self, found: Comparison | None, prosthetic: Side, reported: str, set_angle: str = "") -> None:
+    def show_pair(self, found: Comparison | None, prosthetic: Side, reported: str) -> None:
         """Show how the pair differs; None: one alignment was walked with, and nothing is beside it."""
         self.table.setVisible(found is not None)
-        self.set_angle.setVisible(bool(set_angle))
-        self.set_angle.setText(set_angle)
         self.title.setText(tr("Nothing to compare yet"))
         if found is None:
             return

@@ -45,7 +45,6 @@ class BenchState:
     parts: Sequence[Part]
     found: Comparison | None
     is_simulated: bool
-    set_angle: str = ""  # what was set at the foot between the two, beside what is measured
 
 
 class BenchView(QWidget):
@@ -87,7 +86,7 @@ class BenchView(QWidget):
         self.setAccessibleDescription(f"{state.answer.first} {state.answer.then}")
         self.alignments.show_rows(state.rows, state.side)
         self.alignments.show_entry(state.next_title)
-        self.differences.show_pair(state.found, state.side, state.answer.first, state.set_angle)
+        self.differences.show_pair(state.found, state.side, state.answer.first)
         self._show_curves(state)
         self._arrange()
 
