@@ -68,4 +68,4 @@ class WrappedButton(Button):
 
 
 def _width(part: QWidget) -> int:
-    return part.sizeHint().boundedTo(part.maximumSize()).width()
+    return part.sizeHint().expandedTo(part.minimumSize()).boundedTo(part.maximumSize()).width()

@@ -19,6 +19,7 @@ from core.body import LEG_SITES
 from core.samples import SensorInfo
 from core.session import Patient, RecordingKind, Session
 from devices.files.session_folder import write_session
+from tests.app.library_answers import asked
 from tests.app.wizard.pressing import press
 from tests.safety.live_material import numbered, numbered_session
 
@@ -90,10 +91,8 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
-    found: list[object] = []
-    controller.run(lambda opened: offered(opened, line.id), found.append, None, visit)
-    qtbot.waitUntil(lambda: bool(found), timeout=5000)
-    assert found == [[]], "neither the session itself, nor one without recordings"
+    found = asked(qtbot, controller, lambda opened: offered(opened, line.id))
+    assert found == [], "neither the session itself, nor one without recordings"
 
 
 def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
