@@ -156,8 +156,8 @@ class AlignmentCard(Card):
         lay_out(QHBoxLayout(self._head_row), title, 1, self.chip, word, margins=0)
         lay_out(self._rows_column, 1, margins=0).setSpacing(4)
         self._grid.setSpacing(8)
-        self.set_compact(False)
         lay_out(self.column, self._head_row, (self._scroll, 1), self.next_title, self._grid)
+        self.set_compact(False)  # with a parent: what is shown without one is a window, and takes the keys
 
     def _connect(self) -> None:
         self.parts.activated.connect(self._on_part_chosen)
