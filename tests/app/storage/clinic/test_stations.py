@@ -1,7 +1,9 @@
 """Two stations, one library: what one recorded the other reads, once it was handed over, and neither loses anything."""
 
+import os
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
@@ -169,6 +171,8 @@ def test_of_copies_those_go_that_were_not_used_for_longest(stations: Stations, s
     files = [found(second, walk).journals[0].file for walk in walks]
     kept = second.folder / "cache" / files[0]
     assert second.shared is not None
+    for file in files:  # read an hour ago: within one tick of the file system's clock nobody knows which came last
+        os.utime(second.folder / "cache" / file, (time.time() - 3600,) * 2)
     second.shared.path(found(second, walks[0]).journals[0])  # used last
     second.shared.tidy(second.library.recordings.readable_files(), kept.stat().st_size)
     assert [path.name for path in (second.folder / "cache").iterdir()] == [files[0]]
