@@ -20,7 +20,8 @@ OF_B = AlignmentChange("Alignment A", (FRONT,))
 def part(letter: str, swing_deg: float, change: AlignmentChange | None = None, **more: Any) -> Part:
     found = calibrations()
     left = leg(Side.LEFT)
-    left.parameters["shank_to_foot_in_swing_rad"] = np.full(len(left.strides), np.deg2rad(swing_deg))
+    swing = {"shank_to_foot_in_swing_rad": np.full(len(left.strides), np.deg2rad(swing_deg))}
+    left = replace(left, parameters={**left.parameters, **swing})
     made = Part(letter, f"Alignment {letter}", (judged_walk(walk(left=left), found),), found, alignment=change)
     return replace(made, **more)
 
