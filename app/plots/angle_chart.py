@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.charts.marks import stretches
 from app.plots.thinning import envelope, thin
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text
 from core.body import Side
@@ -72,11 +72,6 @@ class AngleAxes(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()  # Qt's own goes by the scene
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
-
     def _apply_theme(self) -> None:
         theme = current_theme()
         self.setBackground(theme.colours.surface)
@@ -116,7 +111,7 @@ class AngleChart(AngleAxes):
             self.view_box.addItem(item, ignoreBounds=True)
         self.view_box.sigXRangeChanged.connect(self._on_x_range_changed)
         self.view_box.sigResized.connect(self._redraw)  # no finer than the screen: its width has changed
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     def minimumSizeHint(self) -> QSize:
         less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QAccessible, QColor, QImage, QPainter, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.wording.translation import figure_text, tr
@@ -54,7 +54,7 @@ class CostMap(Painted):
         apart = figure_text(math.degrees(cost.apart_rad), ".1f")
         self.setAccessibleName(tr("Fit error of all axes, {sensor}").format(sensor=name))
         self.setAccessibleDescription(stated.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def limits_deg_s(self) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEvent, QPixmap
-from PySide6.QtWidgets import QSizePolicy
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.charts.axes import (
     range_for,
@@ -29,8 +29,7 @@ from app.charts.stride_chart import (
     curves_of_walk,
     usual_range_deg,
 )
-from app.theme.current import current_theme, px
-from app.widgets.themed import Themed
+from app.theme.current import current_theme, on_theme, px
 from core.body import JointKind, Side
 from core.samples import FloatArray
 
@@ -39,7 +38,7 @@ NONE_HIDDEN: Mapping[Side, str] = {}
 EARLIER = (0, 2)  # the thin one of two curves, as in every comparison
 
 
-class CycleChart(Themed):
+class CycleChart(QWidget):
     """One joint over 0 to 100 % of the stride; its axis stays unless a mean curve leaves it."""
 
     accessible_role = QAccessible.Role.Chart
@@ -66,6 +65,7 @@ class CycleChart(Themed):
         self._layout: Layout | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._least = LEAST_SIZE
+        on_theme(self.redraw)
 
     @property
     def is_widened(self) -> bool:
@@ -183,6 +183,3 @@ class CycleChart(Themed):
         if self.readings and event.buttons() & Qt.MouseButton.LeftButton:
             frame, at = self.frame, event.position()
             self.picked.emit(min(max(frame.percent_at(at.x()), 0.0), 100.0), frame.angle_at(at.y()))
-
-    def _apply_theme(self) -> None:
-        self.redraw()

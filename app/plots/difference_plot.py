@@ -9,7 +9,7 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.widgets.painted import Painted
@@ -72,7 +72,7 @@ class DifferencePlot(Painted):
         self.groups = tuple(groups)
         self.setAccessibleName(name)
         self.setAccessibleDescription(in_words)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def reach(self) -> float:

@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHelpEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QToolTip
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM
@@ -44,7 +44,7 @@ class GroupPlot(Painted):
         self.lines: tuple[GroupLine, ...] = ()
         self._unit = ""
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     def show_groups(self, lines: Sequence[GroupLine], unit: str, name: str, in_words: str) -> None:
         """Draw these; a reader of screens gets `name` and `in_words`."""

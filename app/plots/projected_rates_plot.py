@@ -10,7 +10,7 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPen, QPolygonF,
 from PySide6.QtWidgets import QSizePolicy
 
 from app.summary.diagnostics import parts_deg_s
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
@@ -43,7 +43,7 @@ class ProjectedRatesPlot(Painted):
         self._shown, self._side = shown, side
         self.setAccessibleName(tr("Off-axis rotation"))
         self.setAccessibleDescription(". ".join(self._titles()) if shown is not None else "")
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def reach_deg_s(self) -> int:

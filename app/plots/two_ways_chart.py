@@ -6,14 +6,13 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QPen, QPixmap
-from PySide6.QtWidgets import QSizePolicy
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
-from app.theme.current import current_theme, px, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
-from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
 from core.body import Joint, Side
 from core.samples import FloatArray
@@ -28,7 +27,7 @@ MOST_TICKS = 8
 T = TypeVar("T", float, FloatArray)
 
 
-class TwoWaysChart(Themed):
+class TwoWaysChart(QWidget):
     """Degrees over seconds; the axis widens for drift, while the accelerometers' spikes are cut at its ends."""
 
     accessible_role = QAccessible.Role.Chart
@@ -66,7 +65,7 @@ class TwoWaysChart(Themed):
         self.visible_s = first_s, last_s
         is_seen = (self.time_s >= first_s) & (self.time_s <= last_s)
         self.range_deg = range_for(self._fixed, [curve[is_seen] for curve in self.curves_deg[1:]])
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def cut_share(self) -> float:

@@ -1,11 +1,11 @@
 """The theme in force, which the style holds, and how it reaches the application: style, palette and fonts."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from importlib.resources import files
 
 from PySide6.QtCore import QByteArray, QEvent, Qt
-from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPainter, QPalette
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication, QLayout, QStyle, QToolTip, QWidget
 
 from app.theme.colours import DARK, LIGHT, Colours
@@ -37,19 +37,12 @@ def scaled(setter: Callable[..., object], *lengths: float) -> None:
     """
     owner = setter.__self__  # type: ignore[attr-defined]  # of a bound method
     owner.setProperty(SCALED, {**(owner.property(SCALED) or {}), setter.__name__: lengths})
-    setter(*(px(one) if one else 0 for one in lengths))
+    setter(*_in_pixels(lengths))
 
 
 def on_theme(method: Callable[[], object]) -> None:
     """Call a method of a widget now and whenever the theme changes, for what it measures by hand."""
     scaled(method)
-
-
-def smooth_painter(widget: QWidget) -> QPainter:
-    """Give a painter on a widget whose lines have smooth edges."""
-    painter = QPainter(widget)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    return painter
 
 
 def set_dark(is_dark: bool) -> None:
@@ -115,9 +108,14 @@ def _show_style_changed(widget: QWidget, style: QStyle) -> None:
 def _scale_again(one: QWidget | QLayout) -> None:
     """Repeat what `scaled` was asked of a widget and of the layouts within it."""
     for name, lengths in (one.property(SCALED) or {}).items():
-        getattr(one, name)(*(px(length) if length else 0 for length in lengths))
+        getattr(one, name)(*_in_pixels(lengths))
     for layout in one.findChildren(QLayout, options=Qt.FindChildOption.FindDirectChildrenOnly):
         _scale_again(layout)
+
+
+def _in_pixels(lengths: Iterable[float]) -> list[int]:
+    """Nothing stays nothing; what is there has a pixel at least."""
+    return [px(length) if length else 0 for length in lengths]
 
 
 def load_fonts() -> None:

@@ -1,14 +1,13 @@
 """A surface with a hairline round it, on which things that belong together lie."""
 
-from PySide6.QtWidgets import QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.theme.current import scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.theme import CARD_RADIUS
-from app.widgets.themed import Themed
 
 
-class Card(Themed):
+class Card(QWidget):
     def __init__(self, padding: float = 16, spacing: float = 8) -> None:
         super().__init__()
         set_ground(self, Ground("surface", "line", radius=CARD_RADIUS))
@@ -16,4 +15,3 @@ class Card(Themed):
         side = padding or 0.5  # one pixel: the line round the card stays in sight
         scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
         scaled(self.column.setSpacing, spacing)
-        self._apply_theme()

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QAbstractButton, QWidget
 
 from app.theme.current import current_theme
 from app.theme.theme import CONTROL_RADIUS
+from app.widgets.painted import paint
 from app.widgets.painted_text import PaintedText
 
 
@@ -27,11 +28,7 @@ class PaintedButton(QAbstractButton):
         super().keyPressEvent(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self.draw(painter)
-        for text in self.painted_texts():
-            text.paint(painter, current_theme().colours)
+        paint(self, self.draw, self.painted_texts)
 
     def draw(self, painter: QPainter) -> None:
         """Draw all but words."""

@@ -16,9 +16,10 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.current import current_theme, px, smooth_painter
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
+from app.widgets.painted import smooth_painter
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.translation import tr

@@ -53,7 +53,7 @@ class ProgressShown:
 
 
 class SensorsProgress(QWidget):
-    """"""
+    """A title, a bar and a line for each sensor, while something is done with all of them."""
 
     stop_pressed = Signal()  # it is to be left
 

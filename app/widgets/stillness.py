@@ -8,11 +8,11 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px, scaled, smooth_painter
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
-from app.widgets.painted import Painted
+from app.widgets.painted import Painted, smooth_painter
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import segment_name
 from app.wording.translation import figure_text, tr

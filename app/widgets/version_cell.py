@@ -4,7 +4,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QKeyEvent, QPainter, QPaintEvent, QStaticText, QTextOption, QTransform
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.current import current_theme, px, scaled, smooth_painter
+from app.theme.current import current_theme, px, scaled
+from app.widgets.painted import smooth_painter
 
 PADDING, MARK, GAP = 14, 20, 12
 VALUE_SIZE, WHOSE_SIZE = 16, 14

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class FetchControl(QObject):
-    """"""
+    """Fetching what the sensors stored: whether it runs, is put off, or is offered."""
 
     changed = Signal()  # something else is shown, or can be done
 

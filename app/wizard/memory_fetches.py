@@ -70,7 +70,7 @@ class _Running:
 
 
 class MemoryFetches(QObject):
-    """"""
+    """Fetches what sensors stored, one recording after the other, beside what goes on."""
 
     changed = Signal()  # something else is shown
     fetched = Signal(object)  # A Recorder whose journal holds what the sensors did

@@ -56,7 +56,7 @@ class SyncView:
 
 
 class SensorSync(QObject):
-    """"""
+    """Synchronises sensors step by step, and states how far it is."""
 
     changed = Signal()  # something else is shown
     done = Signal()  # the sensors are ready

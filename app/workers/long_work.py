@@ -6,7 +6,7 @@ from app.workers.library_controller import LibraryController
 
 
 class LongWork(QObject):
-    """"""
+    """Begins work of the library for a page, and passes on its title and progress."""
 
     working = Signal(str)  # it began: its title
     progressed = Signal(float, str)  # the share that is done, and what is being done

@@ -31,7 +31,7 @@ MOST_DRAWN = 16  # groups; those with most sessions
 
 
 class QuestionsPage(QWidget):
-    """"""
+    """Questions to a table of many sessions, and their answers as tables and plots."""
 
     table_requested = Signal()  # another table is to be chosen
     making_requested = Signal()  # A table is to be made from the library

@@ -4,14 +4,13 @@ from enum import Enum, auto
 
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout
+from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 HEIGHT, NOTE_HEIGHT = 112, 36
@@ -27,7 +26,7 @@ class CommentState(Enum):
     CONFIRMED = auto()
 
 
-class CommentEditor(Themed):
+class CommentEditor(QWidget):
     """Shows words and what becomes of them."""
 
     edited = Signal(str)  # the words, once the typing pauses
@@ -55,7 +54,7 @@ class CommentEditor(Themed):
         self.field.textChanged.connect(self._on_typed)
         self.button.clicked.connect(self._confirm)
         self.show_comment("", CommentState.EMPTY)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def words(self) -> str:

@@ -58,7 +58,7 @@ class ColumnsReported:
 
 
 class ColumnsForm(QWidget):
-    """"""
+    """What each column of an unknown text stream means."""
 
     changed = Signal()  # something else is entered
 

@@ -113,7 +113,7 @@ class DotList(CellTable):
 
 
 class DotForm(QWidget):
-    """"""
+    """The list of DOT sensors found, and how they are to measure."""
 
     turned = Signal(int)  # the number of a sensor whose tick was turned
     identify_pressed = Signal(int)  # the number of the sensor whose light is to blink

@@ -35,7 +35,7 @@ class _RequiredError(Exception):
 
 
 class DotSetup(QObject):
-    """"""
+    """Connects, sets up and synchronises DOT sensors before they measure."""
 
     changed = Signal()  # something else is shown, or can be done
     ready = Signal(object)  # A `SourceChoice` whose sensors are on one clock

@@ -35,7 +35,7 @@ Asked = Callable[[DotMemories, Callable[[str], None], Callable[[], None]], objec
 
 
 class MemoriesControl(QObject):
-    """"""
+    """Finds recordings in the memories of sensors, and fetches or erases what is chosen."""
 
     changed = Signal()  # something else is shown, or can be done
     left = Signal(bool)  # the sensors are asked for, and whether they were live before

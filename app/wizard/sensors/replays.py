@@ -70,7 +70,7 @@ def offered(opened: "OpenedLibrary", without: UUID | None) -> list[SessionSummar
 
 
 class StoredReplay(QObject):
-    """"""
+    """Chooses a stored session, or one in a folder, to be played in the place of sensors."""
 
     changed = Signal()  # something else is shown, or can be done
     read = Signal(object)  # A `SourceChoice` that plays what was chosen

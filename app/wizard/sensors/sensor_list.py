@@ -25,7 +25,7 @@ TRACE_AT_LEAST = 48
 
 
 class SensorList(QWidget):
-    """"""
+    """A row for each sensor, with its state and where it is worn."""
 
     accessible_role = QAccessible.Role.List
 

@@ -56,7 +56,7 @@ class PlaceShown:
 
 
 class SensorPlaces(QWidget):
-    """"""
+    """The body figure with a tile for each site; sensors are dragged onto it and from it."""
 
     dropped = Signal(str, Site)  # A sensor's name and the site it was let go over
     hovered = Signal(str, object)  # A sensor is being dragged over a site; "" and None: no longer

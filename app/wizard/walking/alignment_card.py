@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.card import Card
@@ -53,7 +53,7 @@ class AlignmentRow:
 
 
 class AlignmentCard(Card):
-    """"""
+    """The alignments walked so far, and the entry for the next change."""
 
     chosen = Signal(int, bool)  # the number of an alignment from 0, and whether it is to stand beside the one shown
     reported = Signal()  # something of the next change was entered: `entry` holds it
@@ -210,7 +210,7 @@ class _AlignmentRow(Painted):
         set_ground(self, Ground("sunken", inset=0) if is_shown else None)
         fill, line, tone = ("inv", "", "inv_ink") if is_shown else ("surface", "ink", "ink")
         self._badge.show_letter(reported.letter, tone, Ground(fill, line, 1.75, CHIP_RADIUS, inset=1))
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     def painted_texts(self) -> list[PaintedText]:
         theme = current_theme()

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.charts.axes import range_for
 from app.plots.angle_chart import FOOT, AngleAxes
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
 from app.wizard.walking.scrolling_picture import Scrolling, ScrollingPicture
@@ -59,7 +59,7 @@ class LiveStrip(AngleAxes):
         self._history = _History(fixed_deg, self.viewport())
         self.view_box.sigResized.connect(self._on_view_resized)
         self._set_range()
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def range_deg(self) -> tuple[float, float]:

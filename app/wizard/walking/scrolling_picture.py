@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter, QPixmap, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.widgets.themed import Themed
+from app.theme.current import on_theme
 from core.samples import FloatArray
 
 SHOWN_S = 8.0  # seconds
@@ -64,7 +64,7 @@ class ScrollingPicture:
         return (self._last_column or 0) - self.columns
 
 
-class Scrolling(Themed):
+class Scrolling(QWidget):
     """Has the last seconds up to `_now_s` in a picture: another one for another size, time in sight or look."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -72,6 +72,7 @@ class Scrolling(Themed):
         self._seconds, self._now_s = SHOWN_S, 0.0
         self._picture: ScrollingPicture | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        on_theme(self.redraw)
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -93,6 +94,3 @@ class Scrolling(Themed):
         if picture is None or (picture.columns, picture.rows) != (columns, rows):
             picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
         return picture
-
-    def _apply_theme(self) -> None:
-        self.redraw()
