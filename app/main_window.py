@@ -32,7 +32,7 @@ from app.storage.layout import default_folder
 from app.system.qt_messages import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
-from app.theme.current import current_theme, grow, load_fonts, set_theme
+from app.theme.current import current_theme, grow, load_fonts, on_theme, set_theme
 from app.theme.ground import Ground, set_ground
 from app.theme.theme import Theme
 from app.widgets.accessible_role import show_roles
@@ -95,6 +95,7 @@ class MainWindow(QWidget):
         self._must_refresh = False  # another station did something under the cover
         self._is_dark: bool | None = None  # not yet known
         self._apply_settings()  # before there is anything to be styled again
+        on_theme(self._on_theme_changed)
         self.setWindowTitle(" – ".join(("Gaitwright", tr(PURPOSE))))
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
@@ -184,7 +185,7 @@ class MainWindow(QWidget):
         self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Filter user events of the desktop's window only; the application has a hundred times as many."""
+        """Note what the user does, by the desktop window's events: the application has a hundred times as many."""
         if event.type() in ACTIVITY:
             self.idle.note_activity()
         return False
@@ -478,11 +479,6 @@ class MainWindow(QWidget):
             theme = replace(theme, colours=DARK if is_dark else LIGHT)
         if theme != current_theme():  # in one step, since each change is written to the settings
             set_theme(theme)
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._on_theme_changed()
 
     def _on_theme_changed(self) -> None:
         self._settings.scale = current_theme().scale  # also when the keys changed it

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 
 from app.help.help_reader import HelpReader
 from app.help.help_topics import Topic, TopicGroup, group_title, markdown_of, plain_words_of, topic_title
-from app.theme.current import current_theme, scaled
+from app.theme.current import NO_LIMIT, current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -34,7 +34,6 @@ from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 
 LIST_WIDTH = 264
-WIDEST = 8_000_000  # Qt's own for "no limit", at 200 %
 ROW = 44
 PADDING = 12
 SHORTEST_SEARCH = 2
@@ -98,7 +97,7 @@ class HelpPage(QWidget):
         self._side.setAlignment(self.back, top if is_compact else Qt.AlignmentFlag.AlignLeft)
         scaled(self._row.setContentsMargins, *[16 if is_compact else 24] * 4)
         scaled(self._beside.setMinimumWidth, 0 if is_compact else LIST_WIDTH)
-        scaled(self._beside.setMaximumWidth, WIDEST if is_compact else LIST_WIDTH)
+        scaled(self._beside.setMaximumWidth, NO_LIMIT if is_compact else LIST_WIDTH)
 
     def focus(self) -> None:
         """Give the focus to the text, so that the keys scroll it."""

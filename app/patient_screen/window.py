@@ -13,7 +13,7 @@ class PatientWindow(QWidget):
     """Esc and F8 close it, F11 fills the screen, Space is for the walk."""
 
     closed = Signal()  # by whatever way
-    run_requested = Signal()  # space was pressed here
+    run_requested = Signal()  # Space was pressed here
 
     def __init__(self) -> None:
         super().__init__()

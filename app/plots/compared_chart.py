@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in_words, sign_in_words, title_in_words
 from app.charts.stride_chart import StrideCurve
 from app.plots.cycle_chart import CycleChart
+from app.theme.current import scaled
 from app.theme.icons import VERDICT_ICONS, Icon
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -58,7 +59,7 @@ class ComparedFrame(Card):
         head = lay_out(QHBoxLayout(), Chip(side), title, self._verdict_mark, self.verdict, 1, sign)
         notes = lay_out(QHBoxLayout(), (self._mark, 0, Qt.AlignmentFlag.AlignTop), (self._note, 1))
         for row in (head, notes):
-            row.setSpacing(8)
+            scaled(row.setSpacing, 8)
         lay_out(self.column, head, notes, (chart, 1))
 
     @property

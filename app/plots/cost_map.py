@@ -42,6 +42,7 @@ class CostMap(Painted):
         self._axis_sd_rad: float | None = None
         self._image: QImage | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        on_theme(self._apply_theme)
 
     def show_cost(self, cost: CostOverSphere, side: Side, axis_sd_rad: float | None, name: str) -> None:
         """Draw the map of the sensor on the segment `name`; the circle about the axis is 2 SD wide."""
@@ -54,7 +55,7 @@ class CostMap(Painted):
         apart = figure_text(math.degrees(cost.apart_rad), ".1f")
         self.setAccessibleName(tr("Fit error of all axes, {sensor}").format(sensor=name))
         self.setAccessibleDescription(stated.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
-        on_theme(self._apply_theme)
+        self._apply_theme()
 
     @property
     def limits_deg_s(self) -> tuple[float, float]:

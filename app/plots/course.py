@@ -73,6 +73,7 @@ class CourseCard(Card):
         scaled(self._grid.setVerticalSpacing, 2)
         self._join(self.axis)
         self._show_kinds(lane_kinds())
+        on_theme(self._keep_heights)
         self.compute.clicked.connect(self.computing_requested)
         self.info.toggled.connect(self.method.setVisible)
         self.method.hide()
@@ -161,7 +162,7 @@ class CourseCard(Card):
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
         self._grid.setColumnStretch(1, 0 if is_narrow else 1)
         hear_as_laid_out(self._grid_room)
-        on_theme(self._keep_heights)
+        self._keep_heights()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """A hairline over every row."""

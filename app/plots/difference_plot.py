@@ -67,12 +67,13 @@ class DifferencePlot(Painted):
         super().__init__()
         self.groups: tuple[DifferenceGroup, ...] = ()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        on_theme(self._apply_theme)
 
     def show_groups(self, groups: Sequence[DifferenceGroup], name: str, in_words: str) -> None:
         self.groups = tuple(groups)
         self.setAccessibleName(name)
         self.setAccessibleDescription(in_words)
-        on_theme(self._apply_theme)
+        self._apply_theme()
 
     @property
     def reach(self) -> float:

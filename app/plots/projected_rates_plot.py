@@ -37,13 +37,14 @@ class ProjectedRatesPlot(Painted):
         self._side = Side.LEFT
         self._shown: ProjectedRates | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        on_theme(self._apply_theme)
 
     def show_rates(self, shown: ProjectedRates | None, side: Side) -> None:
         """Draw both pairings; None where no second showed them."""
         self._shown, self._side = shown, side
         self.setAccessibleName(tr("Off-axis rotation"))
         self.setAccessibleDescription(". ".join(self._titles()) if shown is not None else "")
-        on_theme(self._apply_theme)
+        self._apply_theme()
 
     @property
     def reach_deg_s(self) -> int:

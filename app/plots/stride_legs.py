@@ -167,25 +167,22 @@ class _Picture(Painted):
             return
         rows = px(ROW) * len(self.sides)
         self._paint_legs(painter, self.legs, QRectF(0, 0, self.width(), self.height() - rows))
-        for side, text in self._texts().items():
-            top = text.box.top() + px((ROW - CHIP) / 2)
+        for number, side in enumerate(self.sides):
+            top = self.height() - rows + number * px(ROW) + px((ROW - CHIP) / 2)
             paint_chip(painter, QRectF(0, top, px(CHIP), px(CHIP)), side, current_theme())
 
     def painted_texts(self) -> list[PaintedText]:
-        return list(self._texts().values())
-
-    def _texts(self) -> dict[Side, PaintedText]:
         """What is beneath the legs: each measured knee at the cursor."""
         if self.legs is None:
-            return {}
+            return []
         px, readings = current_theme().px, self.readings()
         left, first = px(CHIP) + px(CHIP_GAP), self.height() - px(ROW) * len(self.sides)
-        found = {}
+        found = []
         for number, side in enumerate(self.sides):
             words = readings.get(side, tr("not reported"))
             font = current_theme().font(13, MEDIUM) if side in readings else current_theme().font(SMALL)
             box = QRectF(left, first + number * px(ROW), self.width() - left, px(ROW))
-            found[side] = PaintedText(words, box, font, "ink" if side in readings else "ink2", LEFT)
+            found.append(PaintedText(words, box, font, "ink" if side in readings else "ink2", LEFT))
         return found
 
     def _paint_legs(self, painter: QPainter, legs: MeanLegs, room: QRectF) -> None:

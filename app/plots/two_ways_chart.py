@@ -43,6 +43,7 @@ class TwoWaysChart(QWidget):
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         scaled(self.setMinimumSize, *LEAST_SIZE)
+        on_theme(self._apply_theme)
 
     def show_angles(
         self, joint: Joint, time_s: FloatArray, from_rates: FloatArray, from_forces: FloatArray, fused: FloatArray
@@ -65,7 +66,7 @@ class TwoWaysChart(QWidget):
         self.visible_s = first_s, last_s
         is_seen = (self.time_s >= first_s) & (self.time_s <= last_s)
         self.range_deg = range_for(self._fixed, [curve[is_seen] for curve in self.curves_deg[1:]])
-        on_theme(self._apply_theme)
+        self._apply_theme()
 
     @property
     def cut_share(self) -> float:

@@ -7,6 +7,7 @@ from functools import partial
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -119,14 +120,15 @@ class CorrectPage(QWidget):
             card.column.addStretch(1)
         lay_out(self.sides.column, (self.swap, 0, Qt.AlignmentFlag.AlignLeft), self.swap_note)
         head = lay_out(QHBoxLayout(), self.back, (self.note, 1))
-        head.setSpacing(16)
+        scaled(head.setSpacing, 16)
         right = lay_out(QVBoxLayout(), self.joints, self.sides, 1)
-        right.setSpacing(12)
+        scaled(right.setSpacing, 12)
         self._columns = lay_out(QBoxLayout(ACROSS), (self.walks, 3), (right, 2), spacing=12)
         lay_out(QVBoxLayout(self), head, (self._columns, 1), margins=(16, 16, 16, 12), spacing=12)
 
     def _on_condition_committed(self, key: str) -> None:
-        self.condition_typed.emit(key, self.walk_rows[key].condition.text.strip())
+        if (row := self.walk_rows.get(key)) is not None:  # a row that goes away is left, and commits
+            self.condition_typed.emit(key, row.condition.text.strip())
 
 
 class _WalkRow(QWidget):
@@ -140,7 +142,7 @@ class _WalkRow(QWidget):
         words = lay_out(QVBoxLayout(), self._name, self._note, spacing=0)
         kept = self.kept, 0, Qt.AlignmentFlag.AlignLeft
         self._row = lay_out(QBoxLayout(ACROSS, self), (words, 2), (self.condition, 3), kept, margins=0)
-        self._row.setSpacing(12)
+        scaled(self._row.setSpacing, 12)
 
     def show_line(self, line: WalkLine) -> None:
         if line.condition != self._line.condition or not self.condition.text:
@@ -165,9 +167,9 @@ class _JointRow(QWidget):
         self._note = Text(size=12, tone="ink2", wraps=True)
         kind = Text(tr("Knee") if joint.is_knee else tr("Ankle"), size=15, weight=SEMIBOLD)
         head = lay_out(QHBoxLayout(), Chip(joint.side), kind, (self._note, 1))
-        head.setSpacing(8)
+        scaled(head.setSpacing, 8)
         column = lay_out(QVBoxLayout(self), head, (self.turned, 0, Qt.AlignmentFlag.AlignLeft), margins=0)
-        column.setSpacing(4)
+        scaled(column.setSpacing, 4)
 
     def show_line(self, line: JointLine) -> None:
         self._note.setText(line.note)

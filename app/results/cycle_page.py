@@ -20,6 +20,7 @@ from app.summary.walk_figures import (
     strides_in_words,
     time_distance_figures,
 )
+from app.theme.current import scaled
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK, figure_columns, figure_rows
 from app.widgets.lay_out import lay_out
@@ -155,7 +156,7 @@ class FiguresCard(Card):
     def __init__(self, title: str, what: str) -> None:
         super().__init__(padding=12)
         head = lay_out(QHBoxLayout(), Text(title, size=16, weight=SEMIBOLD), Text(what, size=12, tone="ink2"), 1)
-        head.setSpacing(8)
+        scaled(head.setSpacing, 8)
         self.table = CellTable(title)
         self.note = Text(size=12, tone="ink2", wraps=True)
         lay_out(self.column, head, self.table, self.note)

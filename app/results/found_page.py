@@ -180,7 +180,7 @@ class _Head(QHBoxLayout):
         super().__init__()
         self._chip = Chip(Side.LEFT)  # until a joint is shown
         self._simulated = Text(tr(SIMULATED), size=12, weight=SEMIBOLD)
-        self.setSpacing(8)
+        scaled(self.setSpacing, 8)
         words = Text(title, size=16, weight=SEMIBOLD, wraps=True)
         lay_out(self, self._chip, (words, 1), Text(figure, size=12, tone="ink2"), self._simulated)
 

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.summary.data_quality import DataQuality, QualityLine
-from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.current import current_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
 from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
@@ -126,7 +126,7 @@ class QualityPage(QWidget):
         self._scroll = scrolled(cards)
         self._order_card, self._figures_card, self._figure_card = Card(), Card(padding=12), Card()
         order = lay_out(QHBoxLayout(), (IconMark(Icon.READ), 0, Qt.AlignmentFlag.AlignTop), (self.in_order, 1))
-        order.setSpacing(12)
+        scaled(order.setSpacing, 12)
         self._order_card.column.addLayout(order)
         tables, title = QWidget(), Text(tr("All findings"), size=16, weight=SEMIBOLD)
         lay_out(QVBoxLayout(tables), self.facts, self.hip_facts, 1, margins=0)
@@ -143,7 +143,7 @@ class QualityPage(QWidget):
         self._columns = lay_out(QHBoxLayout(), (left, 1), self._figure_card, spacing=16)
         words = lay_out(QVBoxLayout(), self.first, self.then, spacing=4)
         lay_out(QVBoxLayout(self), words, (self._columns, 1), margins=0, spacing=12)
-        on_theme(self._keep_beside)
+        scaled(self.figure.keep_beside, BESIDE)
 
     def _place_doors(self, in_row: int) -> None:
         """Put so many beside each other; of two rows the first has one door, as wide as both below it."""
@@ -172,9 +172,6 @@ class QualityPage(QWidget):
         self._scroll.setVisible(is_folded)
         self._figures_card.setVisible(not is_folded)
 
-    def _keep_beside(self) -> None:
-        self.figure.keep_beside(current_theme().px(BESIDE))
-
 
 class LineCard(QWidget):
     """One thing that speaks against a figure: yellow where it keeps one from being reported."""
@@ -189,13 +186,13 @@ class LineCard(QWidget):
         self.repeat: Button | None = None
         top = Qt.AlignmentFlag.AlignTop
         words = QVBoxLayout()
-        words.setSpacing(2)
+        scaled(words.setSpacing, 2)
         what = Text(title, size=16, weight=SEMIBOLD, tone=tone, wraps=True)
         lay_out(words, what, Text(line.why, tone=quiet, wraps=True))
         if line.to_do:
             word = Text(tr("To do"), weight=SEMIBOLD, tone=tone)
             to_do = lay_out(QHBoxLayout(), (word, 0, top), (Text(line.to_do, tone=tone, wraps=True), 1))
-            to_do.setSpacing(12)
+            scaled(to_do.setSpacing, 12)
             words.addLayout(to_do)
         mark = IconMark(VERDICT_ICONS[line.verdict], tone=tone)
         row = lay_out(QHBoxLayout(self), (mark, 0, top), (words, 1), margins=(16, 12, 16, 12), spacing=12)

@@ -56,7 +56,7 @@ class ToolsRow(QGridLayout):
         self.show_legs = Toggle(tr("Legs"), tr("G"), is_on=True)
         self.show_legs.set_face(height=TOOLS)
         for choice in (self.recordings, self.thin):
-            scaled(choice.setFixedHeight, TOOLS)
+            choice.set_height(TOOLS)
         self.against, self.choices, self.beneath = QWidget(), QWidget(), QWidget()
         chosen = (self.part, self.recordings, self.thin_name, self.thin, self.show_legs, self.against)
         self._against = lay_out(QHBoxLayout(self.against), compare.kinds, compare.bases, margins=0, spacing=GAP)

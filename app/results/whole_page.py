@@ -55,7 +55,7 @@ class WholePage(QWidget):
         self.to_whole = Button(tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(size=12, tone="ink2", wraps=True)
         self._notes = QWidget()
-        lay_out(QVBoxLayout(self._notes), self.shown, self.hint, margins=0).setSpacing(2)
+        lay_out(QVBoxLayout(self._notes), self.shown, self.hint, margins=0, spacing=2)
         self._foot = QGridLayout()
         self._foot.setColumnStretch(0, 1)
         lay_out(QVBoxLayout(self), (self.charts, 1), self._foot, margins=0, spacing=12)

@@ -15,7 +15,8 @@ from app.theme.theme import Theme
 FONT_FILES = ("Inter-Regular.otf", "Inter-Medium.otf", "Inter-SemiBold.otf", "InterDisplay-SemiBold.otf")
 
 POINTS_PER_INCH = 72.0
-SCALED = "scaled"  # property of widgets and layouts: their setters with lengths of the design
+SCALED = "scaled"  # property of widgets and layouts: their setters with lengths of the design, in order
+NO_LIMIT = 8_000_000  # px of the design, Qt's own at 200 %: a length that was scaled is replaced, never taken back
 SCALES = (0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 
 
@@ -36,12 +37,13 @@ def scaled(setter: Callable[..., object], *lengths: float) -> None:
     `setter` is a bound method, as `row.setSpacing`; a further call of the same one takes the place of the one before.
     """
     owner = setter.__self__  # type: ignore[attr-defined]  # of a bound method
-    owner.setProperty(SCALED, {**(owner.property(SCALED) or {}), setter.__name__: lengths})
+    others = [one for one in owner.property(SCALED) or () if one[0] != setter.__name__]
+    owner.setProperty(SCALED, [*others, (setter.__name__, lengths)])
     setter(*_in_pixels(lengths))
 
 
 def on_theme(method: Callable[[], object]) -> None:
-    """Call a method of a widget now and whenever the theme changes, for what it measures by hand."""
+    """Call a method of a widget now and whenever the theme changes, after its lengths, for what it measures by hand."""
     scaled(method)
 
 
@@ -99,18 +101,19 @@ def _in_points(font: QFont) -> QFont:
 
 def _show_style_changed(widget: QWidget, style: QStyle) -> None:
     for child in widget.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
-        _show_style_changed(child, style)
+        if not child.isWindow():  # which has its own turn
+            _show_style_changed(child, style)
     _scale_again(widget)
     style.polish(widget)
     QApplication.sendEvent(widget, QEvent(QEvent.Type.StyleChange))
 
 
 def _scale_again(one: QWidget | QLayout) -> None:
-    """Repeat what `scaled` was asked of a widget and of the layouts within it."""
-    for name, lengths in (one.property(SCALED) or {}).items():
-        getattr(one, name)(*_in_pixels(lengths))
+    """Repeat what `scaled` was asked of the layouts within a widget, then of itself; what measures them comes last."""
     for layout in one.findChildren(QLayout, options=Qt.FindChildOption.FindDirectChildrenOnly):
         _scale_again(layout)
+    for name, lengths in sorted(one.property(SCALED) or (), key=lambda asked: not asked[1]):
+        getattr(one, name)(*_in_pixels(lengths))
 
 
 def _in_pixels(lengths: Iterable[float]) -> list[int]:

@@ -14,7 +14,7 @@ GROUND = "ground"  # property of a widget
 class Ground:
     """`fill` and `line` are tokens of colours, empty: none. `inset` is in px of the screen.
 
-    `edge`: it has no round corners, and its line is along this edge only.
+    `edge`, at the top or bottom: it has no round corners, and its line is along this edge only.
     """
 
     fill: str = ""

@@ -51,15 +51,15 @@ BUSY_S = 1.5  # from one end of a bar to the other, where it is not known how lo
 
 
 class ButtonKind(Enum):
-    """What a button is for: a wish, another way, one beside the matter; on or off; one of a few, any, one label."""
+    """What a button is for."""
 
-    PRIMARY = auto()
-    SECONDARY = auto()
-    QUIET = auto()
-    TOGGLE = auto()
-    SEGMENT = auto()
-    CHIP = auto()
-    LABEL = auto()
+    PRIMARY = auto()  # what most want next
+    SECONDARY = auto()  # another way
+    QUIET = auto()  # beside the matter
+    TOGGLE = auto()  # on or off
+    SEGMENT = auto()  # one of a few, side by side
+    CHIP = auto()  # any of a few
+    LABEL = auto()  # one of the names for the next walk
 
 
 @dataclass(frozen=True, slots=True)

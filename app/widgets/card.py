@@ -12,6 +12,10 @@ class Card(QWidget):
         super().__init__()
         set_ground(self, Ground("surface", "line", radius=CARD_RADIUS))
         self.column = QVBoxLayout(self)
+        self.set_padding(padding)
+        scaled(self.column.setSpacing, spacing)
+
+    def set_padding(self, padding: float) -> None:
+        """Leave so much at the sides, px of the design, and three quarters of it above and below."""
         side = padding or 0.5  # one pixel: the line round the card stays in sight
         scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
-        scaled(self.column.setSpacing, spacing)

@@ -10,7 +10,7 @@ from app.theme.current import scaled
 ALL_ROOM = Qt.AlignmentFlag(0)
 Box = TypeVar("Box", bound=QBoxLayout)
 Part = QWidget | QLayout
-Placed = Part | int | tuple[Part, int] | tuple[Part, int, Qt.AlignmentFlag]
+Placed = Part | int | tuple[Part, int] | tuple[QWidget, int, Qt.AlignmentFlag]
 
 
 def lay_out(
@@ -21,8 +21,8 @@ def lay_out(
 ) -> Box:
     """Put parts into a row or column, behind those it has, and give it back.
 
-    A number is a stretch. A part may come with its stretch, and with its place in the room it has. Lengths are those of
-    the design; `margins` are the same on all sides, or left, top, right and bottom.
+    A number is a stretch. A part may come with its stretch, a widget with its place in the room it has. Lengths are
+    those of the design; `margins` are the same on all sides, or left, top, right and bottom.
     """
     for part in parts:
         if isinstance(part, int):

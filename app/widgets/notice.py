@@ -22,7 +22,6 @@ class Notice(Painted):
 
     def __init__(self, size: float = 18, padding: int = PADDING) -> None:
         super().__init__()
-        self._padding = padding
         self._icon: Icon | None = None
         self._is_caution = False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
@@ -30,7 +29,7 @@ class Notice(Painted):
         self._then = Text(size=14, tone="ink2", wraps=True)
         words = lay_out(QVBoxLayout(), self._what, self._then, spacing=2)
         row = QHBoxLayout(self)
-        lay_out(row, (words, 1), margins=(PADDING + ICON + 8, self._padding, PADDING, self._padding))
+        lay_out(row, (words, 1), margins=(PADDING + ICON + 8, padding, PADDING, padding))
 
     @property
     def text(self) -> str:

@@ -121,7 +121,7 @@ class SensorsProgress(QWidget):
 
 
 class _SensorLines(QWidget):
-    """The sensors one below the other; screen readers are given all of them."""
+    """The sensors one below the other, each with its state for a screen reader."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -135,7 +135,6 @@ class _SensorLines(QWidget):
             return
         self._shown = tuple(lines)
         self.setVisible(bool(lines))
-        self.setAccessibleName(", ".join(f"{line.name} {line.words or _STATES[line.state]()}" for line in lines))
         while len(self._rows) < len(lines):
             self._add_row()
         for number, (row, mark, words) in enumerate(self._rows):
@@ -146,9 +145,11 @@ class _SensorLines(QWidget):
                 mark.set_icon(_ICONS[line.state], tone)
                 words.set_tone(tone)
                 words.setText(f"{line.name} · {line.words}" if line.words else line.name)
+                words.setAccessibleName(f"{line.name} {line.words or _STATES[line.state]()}")
 
     def _add_row(self) -> None:
         row, mark, words = QWidget(), IconMark(Icon.UNCHECKED, MARK), Text(weight=MEDIUM)
+        words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)  # the page is no wider for it
         lay_out(QHBoxLayout(row), mark, (words, 1), margins=0, spacing=GAP)
         scaled(row.setFixedHeight, LINE)
         self._column.addWidget(row)

@@ -52,7 +52,7 @@ class StepRail(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._form = RailForm.USUAL
-        set_ground(self, Ground("sunken", edge=Qt.Edge.RightEdge))
+        set_ground(self, Ground("sunken", radius=0, inset=0))
         self._below_names: list[str] = []
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self.setAccessibleName(tr("Steps"))

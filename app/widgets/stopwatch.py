@@ -45,10 +45,8 @@ class Stopwatch(Painted):
         """Give what is painted now, each in its box."""
         theme = current_theme()
         words, time = self._columns()
-        height = self.height() if self._is_compact else theme.px(18)
-        top = 0 if self._is_compact else (self.height() - theme.px(18 + 6 + THICK)) / 2
         return [
-            PaintedText(self._words(), QRectF(0, top, words, height), theme.font(12), "ink2", RIGHT),
+            PaintedText(self._words(), self._words_box(words), theme.font(12), "ink2", RIGHT),
             PaintedText(
                 clock(self._elapsed_s, 2),
                 QRectF(self.width() - time, 0, time, self.height()),
@@ -62,7 +60,7 @@ class Stopwatch(Painted):
         c, px = theme.colours, theme.px
         if self._is_compact:
             return
-        words = self.painted_texts()[0].box
+        words = self._words_box(self._columns()[0])
         line = QRectF(words.right() - px(LINE), words.bottom() + px(4), px(LINE), px(THICK))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(c.track))
@@ -71,6 +69,11 @@ class Stopwatch(Painted):
         line.setWidth(max(share * line.width(), line.height()))
         painter.setBrush(QColor(c.ink))
         painter.drawRoundedRect(line, line.height() / 2, line.height() / 2)
+
+    def _words_box(self, width: int) -> QRectF:
+        height = self.height() if self._is_compact else px(18)
+        top = 0 if self._is_compact else (self.height() - px(18 + 6 + THICK)) / 2
+        return QRectF(0, top, width, height)
 
     def _words(self) -> str:
         minutes = TARGET_S // 60

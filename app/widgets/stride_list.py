@@ -154,7 +154,7 @@ class StrideList(CellTable):
     `chosen`: the StrideLine in force, or None.
     """
 
-    turned = Signal(object)  # A StrideLine as it is now, which is to be left out or taken in again
+    turned = Signal(object)  # a StrideLine as it is now, which is to be left out or taken in again
 
     def __init__(self, name: str) -> None:
         super().__init__(name, row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)

@@ -22,7 +22,7 @@ class VersionCell(QAbstractButton):
     """As high as its words need; the one that is chosen has a filled mark and a bold edge."""
 
     moved = Signal(int, int)  # an arrow was pressed: columns to the right, rows down
-    confirmed = Signal()  # enter was pressed
+    confirmed = Signal()  # Enter was pressed
 
     def __init__(self, field: str, value: str, whose: str) -> None:
         super().__init__()

@@ -25,14 +25,11 @@ SURE_S = 2.0  # of fetching, before it is shown how long the rest will take
 
 @dataclass(frozen=True, slots=True)
 class FetchView:
-    """How far the recording is that is being fetched.
-
-    `done`, `of`: its samples, and about how many there are.
-    """
+    """How far the recording is that is being fetched."""
 
     sensor: str = ""  # which is sending now; empty while they are still asked to end
-    done: int = 0
-    of: int = 0
+    done: int = 0  # samples of that sensor so far
+    of: int = 0  # about how many it has
     left_s: float | None = None  # until all sensors of this recording are fetched, about; None: not known yet
     fetched: tuple[str, ...] = ()  # sensors that are done
     waiting: int = 0  # how many recordings there are in the sensors, this one among them
@@ -73,7 +70,7 @@ class MemoryFetches(QObject):
     """Fetches what sensors stored, one recording after the other, beside what goes on."""
 
     changed = Signal()  # something else is shown
-    fetched = Signal(object)  # A Recorder whose journal holds what the sensors did
+    fetched = Signal(object)  # a Recorder whose journal holds what the sensors did
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)

@@ -36,13 +36,13 @@ class StoppedRecording(NamedTuple):
 
 
 class ReadingBack(QObject):
-    """
+    """Reads what was recorded back from its journal, one recording after the other, and again where that fails.
 
     `failed`: what the matter is, where the recording is meanwhile, and whether that is news: at the first try, and
     where it is left to the next start.
     """
 
-    read = Signal(object, object)  # A StoppedRecording, and the SessionRecording that it is now
+    read = Signal(object, object)  # a StoppedRecording, and the SessionRecording that it is now
     failed = Signal(str, str, bool)
 
     def __init__(self, controller: LibraryController, fetches: MemoryFetches, parent: QObject) -> None:

@@ -39,7 +39,7 @@ class Step(QObject):
     jumped = Signal(object)  # another step, by its StepId, is where to go on
     reported = Signal(str, str)
     offered = Signal(str)  # something was done that can be undone: what, for the toast; `undo` takes it back
-    demonstration_required = Signal()  # A visit of the demonstration's patient is to begin in place of this one
+    demonstration_required = Signal()  # a visit of the demonstration's patient is to begin in place of this one
 
     def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)

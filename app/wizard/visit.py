@@ -67,7 +67,7 @@ class Visit(QObject):
     changed = Signal()  # the session's row, or what is known of zero and standing
     changed_elsewhere = Signal()  # by another station of the clinic: what is held here is as it was before
     deleted_elsewhere = Signal(str, str)
-    resumed = Signal()  # A session of the library has been read, with its recordings
+    resumed = Signal()  # a session of the library has been read, with its recordings
     earlier_read = Signal(object)
     refused = Signal(str, str)  # what the library or a source refused, and what to do
     merged = Signal(str, str)  # what another station changed of the same meanwhile, in two sentences

@@ -34,7 +34,7 @@ class QuestionsPage(QWidget):
     """Questions to a table of many sessions, and their answers as tables and plots."""
 
     table_requested = Signal()  # another table is to be chosen
-    making_requested = Signal()  # A table is to be made from the library
+    making_requested = Signal()  # a table is to be made from the library
     question_changed = Signal(object)  # what is asked now, a `GroupQuestion`
 
     def __init__(self) -> None:

@@ -43,7 +43,7 @@ class Questions(QObject):
     changed = Signal()  # the bar may show something else
     again_requested = Signal()  # sessions are to be analysed again
     repeatability_requested = Signal()  # the clinic's own error figures are asked for
-    making_requested = Signal()  # A table is to be made from this library
+    making_requested = Signal()  # a table is to be made from this library
     reported = Signal(str, str)  # what came of it, and what to do
 
     def __init__(self, settings: Settings, parent: QObject) -> None:

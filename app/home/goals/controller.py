@@ -29,7 +29,7 @@ def today() -> datetime.date:
 class GoalsOfPatient(QObject):
     """One patient at a time."""
 
-    kept = Signal()  # A goal holds, or holds no longer
+    kept = Signal()  # a goal holds, or holds no longer
     reported = Signal(str, str)  # what could not be done, and what to do
 
     def __init__(

@@ -41,7 +41,7 @@ class GoalDraft:
 class GoalsPage(TallPage):
     """Proposes nothing: the value is typed."""
 
-    agreed = Signal(object)  # A `GoalDraft`: it is to hold from now on
+    agreed = Signal(object)  # a `GoalDraft`: it is to hold from now on
     taken_back = Signal(object)  # the key of a goal that is to hold no longer
 
     def __init__(self) -> None:

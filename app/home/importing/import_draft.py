@@ -38,7 +38,7 @@ OPEN, ELSEWHERE = "open", "elsewhere"  # what has no site or kind: left open, an
 class DraftCards(QWidget):
     """What is imported before it is: recordings, sensors and the patient, each to be corrected."""
 
-    changed = Signal()  # A choice was made
+    changed = Signal()  # a choice was made
     placing_requested = Signal()  # the motion shall say where the sensors were
 
     def __init__(self, of_code: QWidget) -> None:

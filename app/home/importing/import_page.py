@@ -26,13 +26,9 @@ NARROW_BELOW = 900  # px of the design
 
 
 class ImportPage(QWidget):
-    """
+    """Recordings of another program become a session: files, patient, and what each sensor and recording is."""
 
-    `code_changed`, `changed`: what was typed or chosen.
-    `files_requested`, `folder_requested`: something is to be chosen.
-    """
-
-    changed = Signal()
+    changed = Signal()  # something was typed or chosen
     reading_requested = Signal(float)  # what could not be read is to be tried again at a rate, Hz
 
     def __init__(self) -> None:

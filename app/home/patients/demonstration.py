@@ -48,7 +48,7 @@ class _Answer(NamedTuple):
 class FillingDemonstration(QObject):
     """One library at a time; another, or `stop`, ends what goes on for the one before."""
 
-    changed = Signal()  # A visit is ready
+    changed = Signal()  # a visit is ready
     reported = Signal(str, str)  # what could not be done, and what follows
     _answered = Signal(object)  # from the threads that wait for the processes
 

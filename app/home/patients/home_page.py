@@ -19,7 +19,7 @@ from app.home.patients.home_empty import EmptyLibrary
 from app.home.patients.patient_panel import PatientPanel
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextStep
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import NO_LIMIT, current_theme, on_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.lay_out import lay_out
 from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
@@ -35,7 +35,6 @@ LIST, WIDE_LIST = 260, 320
 WIDE_FROM = 1400  # px of the design: the list takes more
 ONE_BELOW = 860  # the list or the patient
 PANEL_AT_LEAST = 320
-WIDEST = 8_000_000  # Qt's own, at 200 %
 PATIENTS, PATIENT = "patients", "patient"
 
 
@@ -148,7 +147,7 @@ class HomePage(QWidget):
         self.empty.set_room(width)
         of_list = WIDE_LIST if width >= WIDE_FROM else LIST
         scaled(self._left_room.setMinimumWidth, of_list)
-        scaled(self._left_room.setMaximumWidth, WIDEST if self._is_single else of_list)
+        scaled(self._left_room.setMaximumWidth, NO_LIMIT if self._is_single else of_list)
         inside = width - 2 * EDGE
         self.panel.set_room(inside if self._is_single else inside - GUTTER - of_list)
         self._show_parts()

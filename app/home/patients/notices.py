@@ -11,10 +11,7 @@ from app.workers.refusals import Refusal
 
 
 class LibraryNotices(QObject):
-    """Two banners: `rollback`, of a library that is older than this computer has seen, and `away`.
-
-    `log_in_requested`: the clinic's server answers again.
-    """
+    """Two banners: `rollback`, of a library that is older than this computer has seen, and `away`."""
 
     refused = Signal(str, str)  # why the older state could not be accepted
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from PySide6.QtCore import QPointF, Signal
-from PySide6.QtGui import QPainter, QPaintEvent, QPolygonF
+from PySide6.QtGui import QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px, scaled
@@ -23,6 +23,7 @@ from app.widgets.hint import Hint, HintBand
 from app.widgets.hip_gauge import HipFace, HipGauge
 from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
+from app.widgets.painted import smooth_painter
 from app.wizard.free_motion.swap_banner import SwapBanner
 from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
 
@@ -150,8 +151,7 @@ class FreeMotionPage(QWidget):
         middle = self.figure.geometry().adjusted(-px(8), 0, px(8), 0)
         if self._is_compact or not event.rect().intersects(middle):
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         painter.setPen(current_theme().pen(current_theme().colours.control, 1))
         for joint, gauge in self.gauges.items():
             place = gauge.geometry()

@@ -6,7 +6,7 @@ from uuid import UUID
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import on_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -103,7 +103,7 @@ class ReportPage(QWidget):
         self._is_narrow = is_narrow = width < NARROW_BELOW
         self._row.setDirection(DOWN if is_narrow else ACROSS)
         self.small.setVisible(not is_narrow)
-        self.reading.setMinimumHeight(px(360) if is_narrow else 0)
+        scaled(self.reading.setMinimumHeight, 360 if is_narrow else 0)
         self._fit_card()
 
     def event(self, event: QEvent) -> bool:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING
 from uuid import UUID
 
@@ -43,6 +44,7 @@ from app.workers.library_controller import LibraryController
 from core.session import RecordingKind
 
 if TYPE_CHECKING:
+    from app.reports.patient.document import ReportPreview
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import SessionSummary
     from app.wizard.report.leaving_dialog import Rows
@@ -70,6 +72,8 @@ class ReportStep(Step):
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
         self._has_failed = False  # the preview, so that no page is in sight
+        self._preview: ReportPreview | None = None
+        self._preview_lock = Lock()
         self.comments = CommentControl(visit, self)
         self.comments.changed.connect(self._on_comment_changed)
         visit.preview.done.connect(self._on_previewed)
@@ -139,6 +143,15 @@ class ReportStep(Step):
         from app.wizard.report.writing import Documents  # Typst, Arrow and all formats, once they are asked for
 
         return Documents()
+
+    def _report_preview(self) -> "ReportPreview":
+        """Give the one preview of this step; called by the threads that work for it."""
+        from app.reports.patient.document import ReportPreview  # Typst alone: no page waits for the formats
+
+        with self._preview_lock:
+            if self._preview is None:
+                self._preview = ReportPreview()
+            return self._preview
 
     def _note(self) -> str:
         if self.comments.is_unconfirmed:
@@ -314,7 +327,7 @@ class ReportStep(Step):
 
     def _previewing(self, request: ReportRequest, ppi: float, is_draft_required: bool) -> Work:
         def work(_report: Report) -> object:
-            preview = self._documents.preview
+            preview = self._report_preview()
             return preview.pages(request, ppi), preview.comment_draft(request) if is_draft_required else ""
 
         return work

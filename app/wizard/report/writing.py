@@ -26,10 +26,7 @@ from devices.files.refusal import FileRefusedError
 
 
 class Documents:
-    """What becomes of the requests of one report step, on whichever thread asks."""
-
-    def __init__(self) -> None:
-        self.preview = ReportPreview()
+    """All of it by one name, which the step imports where it is asked for; nothing is kept."""
 
     def write_report(
         self, opened: OpenedLibrary, report: Report, request: ReportRequest, session_id: UUID, out: Path

@@ -38,7 +38,7 @@ class DotSetup(QObject):
     """Connects, sets up and synchronises DOT sensors before they measure."""
 
     changed = Signal()  # something else is shown, or can be done
-    ready = Signal(object)  # A `SourceChoice` whose sensors are on one clock
+    ready = Signal(object)  # a `SourceChoice` whose sensors are on one clock
     left = Signal()  # other sources are asked for
 
     def __init__(self, sensors: "WornSensors", parent: QObject) -> None:

@@ -49,13 +49,13 @@ class Way(StrEnum):
 
 
 class SensorsPage(QWidget):
-    """
+    """The figure with its sensors, the list of those found, and the source that they come from.
 
     `assigned`: a sensor's name, and the site it is worn at; None: nowhere. On a worn site the two change places.
     """
 
     assigned = Signal(str, object)
-    way_chosen = Signal(str)  # A `Way`
+    way_chosen = Signal(str)  # a `Way`
     source_chosen = Signal(str)  # the key of a `SourceOption`
 
     def __init__(self) -> None:

@@ -73,7 +73,7 @@ class StoredReplay(QObject):
     """Chooses a stored session, or one in a folder, to be played in the place of sensors."""
 
     changed = Signal()  # something else is shown, or can be done
-    read = Signal(object)  # A `SourceChoice` that plays what was chosen
+    read = Signal(object)  # a `SourceChoice` that plays what was chosen
     left = Signal()  # no session is asked for after all
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:

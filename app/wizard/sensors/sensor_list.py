@@ -29,7 +29,7 @@ class SensorList(QWidget):
 
     accessible_role = QAccessible.Role.List
 
-    assigned = Signal(str, object)  # A sensor's name and the site it is worn at; None: nowhere
+    assigned = Signal(str, object)  # a sensor's name and the site it is worn at; None: nowhere
     selected = Signal(str)  # the name of the sensor that keys mean from now on
     identify_pressed = Signal(str)
     reconnect_pressed = Signal(str)

@@ -58,8 +58,8 @@ class PlaceShown:
 class SensorPlaces(QWidget):
     """The body figure with a tile for each site; sensors are dragged onto it and from it."""
 
-    dropped = Signal(str, Site)  # A sensor's name and the site it was let go over
-    hovered = Signal(str, object)  # A sensor is being dragged over a site; "" and None: no longer
+    dropped = Signal(str, Site)  # a sensor's name and the site it was let go over
+    hovered = Signal(str, object)  # a sensor is being dragged over a site; "" and None: no longer
     pressed = Signal(Site)  # the tile of a site
 
     def __init__(self) -> None:

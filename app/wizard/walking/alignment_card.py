@@ -110,7 +110,7 @@ class AlignmentCard(Card):
     def set_compact(self, is_compact: bool) -> None:
         """Show the entry of the change in two rows where the card has the width of the window, and little height."""
         self._head_row.setVisible(not is_compact)  # the tab shows it, and the sentence above names whose it is
-        self._scroll.setMinimumHeight(px(LEAST_LIST_COMPACT if is_compact else LEAST_LIST))
+        scaled(self._scroll.setMinimumHeight, LEAST_LIST_COMPACT if is_compact else LEAST_LIST)
         steppers = [*self.steppers.values()]
         bottom = Qt.AlignmentFlag.AlignBottom
         for widget in (self.parts, *steppers, self.words, self.written):
@@ -154,8 +154,8 @@ class AlignmentCard(Card):
     def _build(self) -> None:
         title, word = Text(tr("Alignments"), size=16, weight=SEMIBOLD), Text(tr("prosthetic"), size=12, tone="ink2")
         lay_out(QHBoxLayout(self._head_row), title, 1, self.chip, word, margins=0)
-        lay_out(self._rows_column, 1, margins=0).setSpacing(4)
-        self._grid.setSpacing(8)
+        lay_out(self._rows_column, 1, margins=0, spacing=4)
+        scaled(self._grid.setSpacing, 8)
         lay_out(self.column, self._head_row, (self._scroll, 1), self.next_title, self._grid)
         self.set_compact(False)  # with a parent: what is shown without one is a window, and takes the keys
 
@@ -195,6 +195,7 @@ class _AlignmentRow(Painted):
         self._badge = Badge()
         self._badge.setParent(self)
         scaled(self._badge.move, PADDING, PADDING + 4)
+        on_theme(self._apply_theme)
         scaled(self.setMinimumWidth, 200)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
@@ -210,7 +211,7 @@ class _AlignmentRow(Painted):
         set_ground(self, Ground("sunken", inset=0) if is_shown else None)
         fill, line, tone = ("inv", "", "inv_ink") if is_shown else ("surface", "ink", "ink")
         self._badge.show_letter(reported.letter, tone, Ground(fill, line, 1.75, CHIP_RADIUS, inset=1))
-        on_theme(self._apply_theme)
+        self._apply_theme()
 
     def painted_texts(self) -> list[PaintedText]:
         theme = current_theme()

@@ -83,8 +83,7 @@ class WalkFigures(Card):
             part.setDirection(ACROSS if is_compact and not is_narrow else DOWN)
             scaled(part.setSpacing, 12 if part.direction() is ACROSS else 0)
         self._line.setVisible(not is_compact)
-        side = 8 if is_compact else 16
-        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
+        self.set_padding(8 if is_compact else 16)
 
     def _reserve_room(self) -> None:
         """As wide as the figures get, so that nothing jumps."""

@@ -69,8 +69,7 @@ class WalkingCharts(Card):
             widget.setVisible(not is_compact)
         self._hip_line.setVisible(self._has_hips and not is_compact)
         self.lanes.set_compact(is_compact)
-        side = 8 if is_compact else 16
-        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
+        self.set_padding(8 if is_compact else 16)
         scaled(self.column.setSpacing, 2 if is_compact else 4)
 
     def set_seconds(self, seconds: float) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QEvent, QObject, QRectF, Qt, Signal
-from PySide6.QtGui import QAccessible, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QAccessible, QKeyEvent, QMouseEvent, QPainter, QResizeEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QSizePolicy,
@@ -293,17 +293,14 @@ class ActionRow(PaintedButton):
             PaintedText(self._note, QRectF(left, top + high, width, low), note, "ink2", wraps=True),
         ]
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c = theme.colours
-        painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
         theme.paint_box(painter, box, c.surface, c.control)
         self.paint_veil(painter, box)
         mark = QRectF(px(10), (self.height() - px(20)) / 2, px(20), px(20))
         paint_icon(painter, self._icon, mark, c.ink)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     @property
     def _words_width(self) -> int:

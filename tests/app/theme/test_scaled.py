@@ -1,9 +1,9 @@
 """Lengths given once follow the size of everything."""
 
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import scaled, set_scale
+from app.theme.current import on_theme, scaled, set_scale
 
 
 def test_what_was_scaled_follows_the_size_within_layouts_too(qtbot: QtBot) -> None:
@@ -34,3 +34,35 @@ def test_a_further_length_takes_the_place_of_the_one_before(qtbot: QtBot) -> Non
     scaled(window.setMinimumWidth, 60)
     set_scale(1.5)
     assert window.minimumWidth() == 90
+
+
+class Measured(QWidget):
+    """Notes the lengths that its own measuring finds."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.row = QHBoxLayout(self)
+        self.found: list[tuple[int, int]] = []
+        on_theme(self.a_measure)  # by its name the first of all
+        scaled(self.setMinimumWidth, 100)
+        scaled(self.row.setSpacing, 10)
+
+    def a_measure(self) -> None:
+        self.found.append((self.minimumWidth(), self.row.spacing()))
+
+
+def test_what_measures_by_hand_finds_all_lengths_as_they_are_now(qtbot: QtBot) -> None:
+    one = Measured()
+    qtbot.addWidget(one)
+    set_scale(2.0)
+    assert one.found[-1] == (200, 20)
+
+
+def test_a_dialog_of_a_window_follows_once(qtbot: QtBot) -> None:
+    window = QWidget()
+    qtbot.addWidget(window)
+    dialog = QDialog(window)
+    one = Measured(dialog)
+    before = len(one.found)
+    set_scale(2.0)
+    assert len(one.found) == before + 1
