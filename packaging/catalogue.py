@@ -77,6 +77,13 @@ def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
             yield call, [one for one in named if isinstance(one, str)]
 
 
+def stated_in_part(file: Path) -> Iterator[str]:
+    """Find what a module of `devices` writes out of a refusal whose other words somebody else has."""
+    for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and call.func.attr == "stated_elsewhere":
+            yield from (one.value for one in call.args if isinstance(one, ast.Constant) and isinstance(one.value, str))
+
+
 @cache
 def gathered() -> Catalog:
     """Return every sentence of `app`, those of findings, and the refusals and drivers of `devices`."""
@@ -86,7 +93,7 @@ def gathered() -> Catalog:
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     sys.path.insert(0, str(ROOT))  # a script sees its own folder only
     for file in sorted((ROOT / "devices").rglob("*.py")):
-        for message in (stated for _, both in refused(file) for stated in both):
+        for message in (*(stated for _, both in refused(file) for stated in both), *stated_in_part(file)):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     from app.wording.findings import NAMES, SENTENCES
     from devices.catalogue import DRIVERS

@@ -27,6 +27,7 @@ from app.storage.journal.writer import JournalStatus, JournalSummary, JournalWri
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
 from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, StoredJournal, StoredRecording
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
 from devices.decoders import DECODERS
 
@@ -262,15 +263,11 @@ class _Entry:
                 return stored  # an earlier try came as far
             raise LibraryError("This recording is no longer in the library", "Reload the session")
         if interrupted.is_orphan:
-            return adopt(opened, interrupted, self._session_id, self._reported, _nobody).stored
-        return recover(opened, interrupted, _nobody).stored
+            return adopt(opened, interrupted, self._session_id, self._reported, nobody).stored
+        return recover(opened, interrupted, nobody).stored
 
     def _find(self, opened: OpenedLibrary) -> Interrupted | None:
         return next((one for one in find_interrupted(opened) if one.recording_id == self.id), None)
 
     def _do(self, call: Callable[..., object], *arguments: object) -> None:
         self._steps.append(self._thread.submit(call, *arguments))
-
-
-def _nobody(_share: float, _what: str) -> None:
-    """Report to nobody: it takes a moment."""

@@ -11,6 +11,7 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action
 from app.system.logs import version_of
+from app.system.progress import nobody
 from core.session import Recording, Session
 from core.timed.protocols import PlannedTest
 
@@ -53,7 +54,7 @@ def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> U
     """Write a visit into the library's journals, its report only noted; raises as `import_session`."""
     known = opened.library.patients.find(visit.code)
     reported = replace(session, patient=known.details) if known is not None else session
-    session_id = import_session(opened, reported, _silent, visit.code, limits=visit.limits).session_id
+    session_id = import_session(opened, reported, nobody, visit.code, limits=visit.limits).session_id
     if visit.is_reported:
         subject = about("session", session_id)
         opened.library.audit.note(Action.EXPORT, subject, format=REPORT_FORMAT, is_simulated=True)
@@ -66,7 +67,3 @@ def _reported(recording: Recording, reported: ReportedOfWalk | None, started: da
         return at
     test = PlannedTest(reported.test) if reported.test is not None else None
     return replace(at, condition=reported.condition, alignment=reported.alignment, test=test)
-
-
-def _silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""

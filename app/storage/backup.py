@@ -35,7 +35,7 @@ from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, made_beside
 from app.storage.stored import Action, Checkpoint, LibraryError
-from app.system.progress import Report
+from app.system.progress import Report, nobody
 from app.wording.translation import tr
 
 FORMAT = "gaitwright-backup/1"
@@ -47,10 +47,6 @@ OUR_FILES = re.compile(rf"{re.escape(KEYS)}|{RECORDINGS}/[0-9a-f-]{{36}}\.\d+{re
 PIECE_BYTES = 1 << 20
 SPARE_BYTES = 100_000_000  # left free on the disk of the backups
 PAGES = 256  # of the database, copied between two reports
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +66,7 @@ class Backup:
 
 
 def back_up(
-    opened: OpenedLibrary, into: Path, report: Report = silent, now: Callable[[], datetime.datetime] = now_utc
+    opened: OpenedLibrary, into: Path, report: Report = nobody, now: Callable[[], datetime.datetime] = now_utc
 ) -> Backup:
     """Copy the library into a new folder in `into` and check the copy; raises LibraryError."""
     if opened.shared is not None:
@@ -124,7 +120,7 @@ def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_ut
 
 
 def restore(
-    backup: Path, folder: Path, data_key: KeyMaterial | None, code: str, report: Report = silent
+    backup: Path, folder: Path, data_key: KeyMaterial | None, code: str, report: Report = nobody
 ) -> tuple[str, ...]:
     """Make a library of a backup in `folder`, empty or missing, and give its faults; raises LibraryError.
     `data_key`: from the backup's key file; what came after the backup, deletions too, is undone.

@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -24,15 +24,17 @@ def replace_file(path: Path, content: bytes) -> None:
 @contextmanager
 def replacing(path: Path, beside: Path | None = None, mode: int = 0o600) -> Iterator[BinaryIO]:
     """As `replace_file`, for what is written piece by piece; whatever is raised meanwhile leaves the old file."""
+    is_mine = os.O_TRUNC if beside is None else os.O_EXCL  # a place that others may write holds nothing of that name
     beside = beside or path.with_name(path.name + ".new")
     try:
-        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, mode), "wb") as file:
+        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | is_mine, mode), "wb") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
         beside.replace(path)
     except BaseException:
-        beside.unlink(missing_ok=True)
+        with suppress(OSError):  # of a disk that fails, the first word counts
+            beside.unlink(missing_ok=True)
         raise
     sync_folder(path.parent)
 

@@ -19,7 +19,6 @@ from app.storage.audit import Audit, about, append
 from app.storage.clinic.server_state import refuse_closed
 from app.storage.clinic.station import Station, station_of
 from app.storage.corrections import Corrections
-from app.storage.courses import Courses
 from app.storage.data_key import KeyMaterial
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.models import OperatorRow, folded
@@ -62,6 +61,8 @@ class Library:
         is_end_lost: bool = False,
         station: Station | None = None,
     ) -> None:
+        from app.storage.courses import Courses  # SciPy comes with it, which a log in does not wait for
+
         self.is_end_lost, self.station = is_end_lost, station
         self.root: LibraryRoot | None = None  # of a library in a folder
         self.is_to_be_moved = False

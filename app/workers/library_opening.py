@@ -4,8 +4,6 @@ import logging
 from datetime import datetime
 from pathlib import Path
 
-from app.demonstration import patients
-from app.demonstration.recording import add_patients
 from app.storage.backup import remove_old_backups
 from app.storage.keyring_slot import remember
 from app.storage.keys import KeyRefusedError
@@ -32,9 +30,11 @@ def let_keyring_remember(library: OpenedLibrary) -> None:
 
 def demonstration(folder: Path) -> OpenedLibrary:
     """The demonstration's library with its patients, whose visits are recorded once it is open."""
+    from app.demonstration import patients, recording  # SciPy comes with them, which a log in does not wait for
+
     library = OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None)
     try:
-        add_patients(library, patients.simulated_patients(datetime.now().astimezone()))
+        recording.add_patients(library, patients.simulated_patients(datetime.now().astimezone()))
     except BaseException:
         library.library.close()
         raise

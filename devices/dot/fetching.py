@@ -9,7 +9,6 @@ Each notification is given to who keeps it before it is looked at.
 
 import asyncio
 import struct
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -129,7 +128,7 @@ class Fetching:
         self._sensor, self._file, self._keep, self._progress = sensor, file, keep, progress
         self.framer = FileFramer()
         self._about = max(about, 1)
-        self._asked: Counter[int] = Counter()  # how often a number was asked for again
+        self._asked: list[range] = []  # each time; no count of each number: a damaged one may be in the millions
         self._ended_at, self._looks = -1, 0  # so often the end came right after this number
         self._repairs_amid = True  # until the sensor refuses it
 
@@ -137,7 +136,7 @@ class Fetching:
         """Fetch it all, repaired up to `REPAIRS` times; raises FileLostError, or DotRefusedError if none came."""
         stuck, cut_before = 0, self._sensor.cut_notices
         while (required := self._required()) is not None and stuck <= STUCK:
-            before = len(self.framer.samples), self._looks, self._asked.total()
+            before = len(self.framer.samples), self._looks, len(self._asked)
             try:
                 await reached(self._sensor)
                 if await self._ask(required.start):
@@ -147,7 +146,7 @@ class Fetching:
             except BaseException:
                 await self._broken_off()
                 raise
-            now = len(self.framer.samples), self._looks, self._asked.total()
+            now = len(self.framer.samples), self._looks, len(self._asked)
             stuck = 0 if now != before else stuck + 1
         found, missing = len(self.framer.samples), self.framer.missing()
         if not found:
@@ -179,7 +178,10 @@ class Fetching:
         """What to ask for next: all up to the end, and what is behind it; then what is missing. None: nothing more."""
         if self._looks < LOOKS:
             return range(max(self.framer.next - 1, 0), EVER)
-        return next((gap for gap in self.framer.missing() if self._asked[gap.start] < REPAIRS), None)
+        return next((gap for gap in self.framer.missing() if self._tries(gap.start) < REPAIRS), None)
+
+    def _tries(self, number: int) -> int:
+        return sum(number in asked for asked in self._asked)
 
     async def _ask(self, number: int) -> bool:
         """Let the sensor send from this sample on, or from the first where it takes no other order."""
@@ -228,17 +230,17 @@ class Fetching:
             latest, asked_from = max(latest, number), EVER
             if lacking and await self._again(lacking.start):
                 latest, asked_from = lacking.start - 1, lacking.start
-                self._asked.update(lacking)
+                self._asked.append(lacking)
             elif lacking:
                 self._repairs_amid = False
         if required.stop != EVER:
-            self._asked.update(required)
+            self._asked.append(required)
 
     def _lacking(self, gap: range) -> range:
         """From the first of these that was left out or is damaged, if it may be asked for at once; else none."""
         lacking = (number for number in gap if number not in self.framer.samples)
         first = next(lacking, gap.stop) if self._repairs_amid else gap.stop
-        return range(first, gap.stop) if first < gap.stop and self._asked[first] < REPAIRS else range(0)
+        return range(first, gap.stop) if first < gap.stop and self._tries(first) < REPAIRS else range(0)
 
     async def _ended(self, latest: int) -> None:
         """Count how often the end came right after the last sample that is known."""

@@ -15,8 +15,9 @@ import types
 from collections import abc
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 from enum import StrEnum
+from functools import cache
 from itertools import repeat
 from string import Formatter
 from typing import IO, Any, cast, get_args, get_origin, get_type_hints
@@ -37,7 +38,8 @@ MOST_REFUSAL = 20_000  # letters of each part
 TIMES: Mapping[str, Any] = {"datetime": datetime.datetime, "date": datetime.date, "time": datetime.time}
 TEXTS_OF_REFUSAL = ("where", "what", "remedy")
 ANY_COLUMN = NDArray[np.generic]
-PLAIN: Mapping[Any, Any] = {str: str, bool: bool, int: int, float: float | int, types.NoneType: types.NoneType}
+PLAIN = (str, bool, int, float, types.NoneType)
+ANYTHING = Mapping[str, object]
 
 
 class BrokenAnswerError(Exception):
@@ -86,8 +88,8 @@ def details_of(value: Any, arrays: list[Array]) -> Any:
             return {key: details_of(one, arrays) for key, one in value.items()}
         case list() | tuple():
             return [details_of(one, arrays) for one in value]
-    if is_dataclass(value):
-        return {field.name: details_of(getattr(value, field.name), arrays) for field in fields(value)}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {name: details_of(getattr(value, name), arrays) for name in _fields_of(type(value))}
     return value
 
 
@@ -120,21 +122,34 @@ def _value(kind: Any, details: Any, arrays: Sequence[Array]) -> Any:
         case builtins.type() if issubclass(kind, StrEnum):
             return kind(details)
         case builtins.type() as of if is_dataclass(of):
-            hints, make = get_type_hints(of), cast(Any, of)
-            made = make(**{name: _value(hints[name], one, arrays) for name, one in details.items()})
+            kinds = _fields_of(of)
+            if details.keys() != kinds.keys():
+                raise BrokenAnswerError(f"other fields than {of.__name__} has")
+            made = cast(Any, of)(**{name: _value(kinds[name], one, arrays) for name, one in details.items()})
             if isinstance(made, ImuBlock) and any(column.shape != (len(made),) for column in made.unknown.values()):
                 raise BrokenAnswerError("columns of different lengths")
             return made
-        case plain if plain in PLAIN and isinstance(details, PLAIN[plain]):
+        case builtins.float if type(details) in (int, float):
+            return float(details)
+        case plain if plain in PLAIN and type(details) is plain:
             return details
     raise BrokenAnswerError(f"{type(details)}, expected {kind}")
 
 
 def _one_of(kinds: Sequence[Any], details: Any, arrays: Sequence[Array]) -> Any:
-    for kind in kinds:
+    if type(details) in PLAIN and type(details) in kinds:
+        return details
+    rest = [kind for kind in kinds if kind is not types.NoneType]
+    for kind in rest[:-1]:
         with suppress(BrokenAnswerError):
             return value_from(kind, details, arrays)
-    raise BrokenAnswerError(f"{type(details)}, expected one of {kinds}")
+    return _value(rest[-1], details, arrays)  # whose refusal says why
+
+
+@cache
+def _fields_of(of: type) -> dict[str, Any]:
+    """The fields of a class with their types, but what may be of any: no reader fills it."""
+    return {name: kind for name, kind in get_type_hints(of).items() if kind != ANYTHING}
 
 
 def _column(details: Any, arrays: Sequence[Array]) -> Array:
@@ -188,7 +203,7 @@ def _refusal(details: Details) -> FileRefusedError:
 def _whatever_is_wrong() -> Iterator[None]:
     try:
         yield
-    except (LookupError, TypeError, ValueError, AttributeError, RecursionError, MemoryError) as error:
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError, RecursionError, MemoryError) as error:
         raise BrokenAnswerError(f"an answer of another shape ({error})") from error
 
 

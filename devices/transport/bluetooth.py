@@ -105,8 +105,7 @@ class Radio:
                 "Bluetooth LE sensors cannot connect: a software library is missing",
                 "Install gaitwright[bluetooth]",
             )
-        import bleak  # an extra
-
+        bleak = _bleak()
         async with self.connecting:
             try:
                 found = await bleak.BleakScanner.discover(timeout=seconds, return_adv=True)
@@ -155,12 +154,12 @@ class BluetoothLink:
 
     async def connect(self) -> None:
         """Connect, one at a time with all other links of the adapter."""
-        from bleak import BleakClient  # an extra
-
         if self.is_up:
             return
         await self.disconnect()
-        client = BleakClient(self._to.device or self._to.address, timeout=CONNECT_S, backend=self._radio.backend)
+        client = _bleak().BleakClient(
+            self._to.device or self._to.address, timeout=CONNECT_S, backend=self._radio.backend
+        )
         async with self._radio.connecting:
             try:
                 async with self._lost_within(CONNECT_S):
@@ -201,13 +200,17 @@ class BluetoothLink:
 
     @asynccontextmanager
     async def _lost_within(self, seconds: float) -> AsyncIterator[None]:
-        from bleak.exc import BleakError  # an extra
-
         try:
             async with asyncio.timeout(seconds):
                 yield
-        except (BleakError, OSError, EOFError) as problem:  # TimeoutError is an OSError
+        except (_bleak().exc.BleakError, OSError, EOFError) as problem:  # TimeoutError is an OSError
             raise SourceLostError(f"{self._to.name} was lost") from problem
+
+
+def _bleak() -> Any:
+    import bleak  # an extra
+
+    return bleak
 
 
 async def _begun(work: Coroutine[Any, Any, Result], ended: threading.Event) -> "asyncio.Task[Result]":

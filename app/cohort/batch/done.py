@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from app.cohort.batch.rows import Row
-from app.storage.files import held
+from app.storage.files import held, replace_file
 from app.system.tables import read_json
 from devices.files.refusal import FileRefusedError
 
@@ -111,10 +111,7 @@ def _begun(out: Path) -> str:
 
 
 def _replace(path: Path, content: Mapping[str, object]) -> None:
-    """Whole or not at all."""
-    beside = path.with_suffix(".new")
-    beside.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
-    beside.replace(path)
+    replace_file(path, json.dumps(content, allow_nan=False).encode())
 
 
 def _is_begun_or_empty(out: Path) -> bool:
