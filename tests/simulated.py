@@ -50,13 +50,14 @@ class Store:
         if self._folder is None:
             return compute(*arguments)
         file = self._folder / digest(compute.__name__, *arguments)
-        if file.exists():
+        with suppress(FileNotFoundError):
             found: T = pickle.loads(file.read_bytes())
             return found
         made = compute(*arguments)
-        with NamedTemporaryFile(dir=self._folder, delete=False) as written:
-            pickle.dump(made, written, pickle.HIGHEST_PROTOCOL)
-        Path(written.name).replace(file)  # another worker sees all of it or nothing
+        with suppress(FileNotFoundError):  # three runs of other code came meanwhile, and took the folder away
+            with NamedTemporaryFile(dir=self._folder, delete=False) as written:
+                pickle.dump(made, written, pickle.HIGHEST_PROTOCOL)
+            Path(written.name).replace(file)  # another worker sees all of it or nothing
         return made
 
 
@@ -100,7 +101,7 @@ def digest(*values: object) -> str:
 
 def _add(found: hashlib.blake2b, value: Any) -> None:
     match value:
-        case np.ndarray():
+        case np.ndarray() if value.dtype != object:
             parts: tuple[Any, ...] = (value.dtype.str, value.shape, value.tobytes())
         case Mapping():
             parts = tuple(value.items())

@@ -416,12 +416,13 @@ class ResultPage(QWidget):
         if self.thin.walks:
             facts = Facts(visit, recording, self.thin.walks, self._course)
             headline = self._headline = headline_of(facts)
-        self._facts = facts
+        before, self._facts = self._facts, facts
+        is_new = before is None or before.visit is not visit or before.walk.name != facts.walk.name
         self.headline.show_sentences(headline.first, headline.beside)
         self.tiles.show_tiles(tiles_of(facts))
         self.cycles.show_walk(facts.part, recording, facts.is_simulated, age_and_height(visit.session))
         self.differs.show_facts(facts)
-        self._show_thin(is_walk_new=True)
+        self._show_thin(is_walk_new=is_new)
         self._fit_table()
 
     def _show_thin(self, *, is_walk_new: bool = False) -> None:

@@ -46,6 +46,7 @@ def usual_theme(qapp: QApplication) -> Theme:
 def theme_as_before(qapp: QApplication, usual_theme: Theme) -> Iterator[None]:
     """Whatever a test makes of the theme, the next one begins with the usual one."""
     yield
+    assert qapp.styleSheet() == ""  # one beside the style would be asked in its stead
     if current_theme() != usual_theme:
         # what the test closed is gone first: a scene that Python let go of must not be given of a change
         qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime
-from functools import cache
 
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
@@ -16,7 +15,6 @@ LATE_S = 0.04
 MADE_AT = datetime(2026, 11, 24, 12, tzinfo=UTC)
 
 
-@cache
 def hip_analysis() -> Analysis:
     """A clock per leg, the right one late, found through the hips; all is read but the pelvis's tilt."""
     return analysis_of(session_of(settings(late_s=LATE_S)))

@@ -245,9 +245,12 @@ def case(
         "write_over_session": write_session,
         "read_foreign_trial": lambda name, files, rate_hz, _waiting: read_trial(name, files, rate_hz),
     }
+    patched = set()
     for module in (agree, import_files, places):
         for name in read_here.keys() & vars(module).keys():
             monkeypatch.setattr(module, name, read_here[name])
+            patched.add(name)
+    assert patched == read_here.keys()  # else some are read elsewhere now
     return Case(tmp_path / "out", capsys)
 
 

@@ -256,11 +256,13 @@ def run(url: str, edits: int, seed: int = 1) -> Found:
 
 
 def run_at(asked: argparse.Namespace, folder: Path) -> Found:
+    if asked.url:
+        return run(asked.url, asked.edits, asked.seed)
     if asked.postgres:
         with own_server(folder / "pg") as server:
             address = server.database().replace("postgresql://", "postgresql+psycopg://", 1)
             return run(address, asked.edits, asked.seed)
-    return run(asked.url or str(folder), asked.edits, asked.seed)
+    return run(str(folder), asked.edits, asked.seed)
 
 
 if __name__ == "__main__":

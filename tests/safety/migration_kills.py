@@ -129,7 +129,9 @@ def open_killed(folder: Path, key: DataKey, at_statement: int, after_s: float | 
         event.listen(Engine, "commit", kill)
         logged_in(folder, key, OPERATORS[0]).library.close()
 
-    return end_of_child(open_once, after_s) == KILLED
+    ended = end_of_child(open_once, after_s)
+    assert ended in (0, KILLED), "the opening itself failed"
+    return ended == KILLED
 
 
 def count_statements(folder: Path, key: DataKey) -> tuple[int, float]:

@@ -330,7 +330,7 @@ def _settings(after: list[Row], taken: list[Row]) -> list[str]:
 
 
 def main() -> None:
-    asked = options(__doc__, folder=Path, code=str, note=Path, edits=0, seed=1)
+    asked = options(__doc__, folder=Path, code=str, note=Path, edits={"type": int, "required": True}, seed=1)
     editor = Editor(asked.folder, asked.code, asked.note, asked.seed)
     for _ in range(asked.edits):
         editor.edit()

@@ -20,6 +20,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import find_interrupted
 from app.storage.stored import LibraryBusyError, LibraryError, PlacedSensor, RecordingState
+from core.analysis import analyse
 from core.body import Joint, Site
 from core.results import Analysis
 from core.samples import ImuBlock, SensorInfo
@@ -28,7 +29,7 @@ from devices.simulation.replay import ReplayFaults, ReplaySource
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
 from tests.quick_library import quick_library
 from tests.safety.live_material import Clock, numbered_session
-from tests.simulated import analysis_of, simulation_of
+from tests.simulated import simulation_of
 from tests.waiting import wait_for
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -142,7 +143,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
         assert all(is_part_of(recording.imu[site], played.imu[site]) for site in played.imu)
 
     visit = opened.library.sessions.get(visit_id)
-    first = analysis_of(Session(tuple(live), visit.details.patient, visit.details.sensors, is_simulated=True))
+    first = analyse(Session(tuple(live), visit.details.patient, visit.details.sensors, is_simulated=True))
     opened.library.close()
     with reopened(opened) as later:
         stored_visit = later.library.sessions.get(visit_id)
@@ -150,7 +151,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
     assert again.is_simulated
     assert again.findings == ()
     assert differences(tuple(live), again.recordings) == []
-    assert differences(first, analysis_of(again)) == []
+    assert differences(first, analyse(again)) == []
     assert rms_error_deg(simulated, live[-1], first, Joint.LEFT_KNEE) < 1.0
 
 

@@ -173,6 +173,12 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     assert home.page.search.text() == "0"
 
 
+def test_an_empty_library_begins_with_a_new_patient(qtbot: QtBot, home: Home) -> None:
+    with qtbot.waitSignal(home.session_requested) as requested:
+        home.page.empty.new_patient.click()
+    assert requested.args == [None]
+
+
 @pytest.mark.endurance
 def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     time_s = np.arange(300) / 100

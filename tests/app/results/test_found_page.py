@@ -238,5 +238,4 @@ def test_without_a_joint_the_page_states_so(
     controller.show(session, analysis, replace(analysis.recordings[-1], joints={}))
     assert page.waiting.isVisible()
     assert not page.save.isEnabled()
-    with qtbot.waitSignal(page.back.clicked):
-        page.back.click()
+    assert page.back.isEnabled()

@@ -148,6 +148,7 @@ def test_the_cursor_stays_where_somebody_put_it_when_the_thin_line_changes(
     page.legs.show_percent(20.0)
     choose(page, ThinLine.FIRST_VISIT)
     choose(page, ThinLine.NOTHING)
+    choose(page, "walk 2")
     assert page.legs.percent == 20.0
     show(page, "walk 2")  # its cursor is where its curves count
     assert page.legs.percent != 20.0

@@ -1,13 +1,10 @@
 """What the style makes of Qt's own parts, and whether a change of theme reaches them."""
 
-from collections.abc import Iterator
-
 import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
-    QApplication,
     QFrame,
     QLineEdit,
     QMenu,
@@ -28,12 +25,6 @@ from app.widgets.field import Field
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.toggle import Toggle
-
-
-@pytest.fixture(autouse=True)
-def no_style_sheet(qapp: QApplication) -> Iterator[None]:
-    yield
-    assert qapp.styleSheet() == ""  # one beside the style would be asked in its stead
 
 
 def colours_in(picture: QImage, box: QRect | None = None) -> set[str]:

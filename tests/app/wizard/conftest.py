@@ -99,7 +99,6 @@ def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_
     wizard.show()
     yield wizard
     wizard.finish()
-    qapp.setStyleSheet("")
 
 
 @pytest.fixture

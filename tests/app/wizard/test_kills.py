@@ -96,7 +96,6 @@ def start_again(
     yield start
     for wizard in made:
         wizard.finish()
-    qapp.setStyleSheet("")
 
 
 def visit_of(wizard: Wizard) -> Visit:

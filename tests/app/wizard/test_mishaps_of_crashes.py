@@ -45,7 +45,6 @@ def wizard(
     qtbot.addWidget(wizard)
     yield wizard
     wizard.finish()
-    qapp.setStyleSheet("")
 
 
 def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> StepId:

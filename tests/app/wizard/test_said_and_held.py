@@ -1,6 +1,6 @@
 """Tests of `tests.safety.stated_and_held`. It sees when screen and library disagree, and is silent when they agree."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from types import SimpleNamespace
@@ -69,14 +69,13 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
 @pytest.fixture
 def home_in_sight(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, opened: OpenedLibrary, tmp_path: Path
-) -> Iterator[Any]:
+) -> Any:
     assert controller.state is not None
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show_library(controller.state)
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
-    yield SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, wizard=None)
-    qapp.setStyleSheet("")
+    return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, wizard=None)
 
 
 def test_what_is_stated_otherwise_of_a_session_is_seen(session_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:

@@ -3,7 +3,7 @@ end."""
 
 import shutil
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -139,7 +139,7 @@ def open_window(
     untouched_library: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-) -> Iterator[Opened]:
+) -> Opened:
     """Open the program on the library that is in a folder of its own, and log in where it asks for that."""
     choice = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
     monkeypatch.setattr(wizard_module, "choices", lambda: (choice,))
@@ -157,8 +157,7 @@ def open_window(
         window.show()
         return window
 
-    yield open_it
-    qapp.setStyleSheet("")
+    return open_it
 
 
 def log_in(qtbot: QtBot, window: MainWindow) -> None:

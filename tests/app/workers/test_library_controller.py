@@ -529,18 +529,25 @@ def test_a_passphrase_that_is_remembered_opens_next_time(
 
     monkeypatch.setattr("app.storage.keyring_slot._keyring", Keyring)
     opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
+    assert len(kept) == 1
     controller.close()
-    opened_by(qtbot, controller, lambda holder: holder.open_remembered(folder, "hk"))
+    state = opened_by(qtbot, controller, lambda holder: holder.open_remembered(folder, "hk"))
+    assert state.operator.code == "hk"
 
 
 def test_a_refusing_keyring_is_no_reason_not_to_open(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(*_: object) -> None:
+    asked = []
+
+    def refuse(_slots: object, _key: object, code: str) -> None:
+        asked.append(code)
         raise KeyRefusedError("The keyring does not accept the key", "Unlock it")
 
     monkeypatch.setattr("app.workers.library_opening.remember", refuse)
-    opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
+    state = opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
+    assert asked == ["hk"]
+    assert state.operator.code == "hk"
 
 
 def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(

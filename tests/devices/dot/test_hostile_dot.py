@@ -74,6 +74,19 @@ def test_a_number_beyond_any_memory_costs_no_memory_and_loses_no_sample(
     assert most_bytes < 20e6
 
 
+def test_a_damaged_number_in_the_millions_costs_no_memory(radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is below what counts as beyond any memory: all before it is asked for, in vain."""
+    wearing, sensor, file = recorded(radio)
+    sent = [damaged(3_999_999)]
+    send_too(wearing, monkeypatch, lambda due: [*due, *(sent.pop() for _ in sent[:1] if due)])
+    tracemalloc.start()
+    radio.run(Fetching(sensor, file, nobody, nobody).fetch())
+    _, most_bytes = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert sent == []
+    assert most_bytes < 20e6
+
+
 def test_notices_that_never_end_do_not_hold_stop(radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch) -> None:
     wearing, sensor, file = recorded(radio)
     send_too(wearing, monkeypatch, lambda due: [*due, damaged(0)])

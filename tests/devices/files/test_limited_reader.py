@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock
+from core.samples import ImuBlock, SensorInfo
 from core.session import Session
 from devices.files import limited_reader
 from devices.files.answers import Array, BrokenAnswerError, details_of, receive, send, value_from
@@ -501,3 +501,14 @@ def test_a_finding_of_another_shape_is_no_finding() -> None:
         value_from(FINDINGS, [{"key": "a", "severity": "info", "where": "", "numbers": 3}])
     with pytest.raises(BrokenAnswerError):
         value_from(FINDINGS, {"key": "a"})
+    with pytest.raises(BrokenAnswerError):
+        value_from(FINDINGS, [{"key": "a", "severity": "info", "where": ""}])  # a field is missing
+
+
+def test_a_number_is_of_the_type_that_its_class_names() -> None:
+    sound = details_of(SensorInfo(serial="1", rate_hz=100.0), [])
+    assert value_from(SensorInfo, sound) == SensorInfo(serial="1", rate_hz=100.0)
+    assert type(value_from(SensorInfo, sound | {"rate_hz": 100}).rate_hz) is float
+    for rate_hz in (True, "100", 10**400):
+        with pytest.raises(BrokenAnswerError):
+            value_from(SensorInfo, sound | {"rate_hz": rate_hz})

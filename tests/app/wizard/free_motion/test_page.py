@@ -1,7 +1,6 @@
 """The free motion on the page: what is stated aloud, what is painted again, and how it is laid out."""
 
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -33,7 +32,7 @@ def view(**faces: GaugeFace) -> FreeMotionFace:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
+def page(qtbot: QtBot, qapp: QApplication) -> FreeMotionPage:
     page = FreeMotionPage()
     qtbot.addWidget(page)
     page.resize(1064, 600)
@@ -41,8 +40,7 @@ def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
         page.show()
     page.show_state(view())
     QApplication.processEvents()
-    yield page
-    qapp.setStyleSheet("")
+    return page
 
 
 @pytest.fixture
