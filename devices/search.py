@@ -83,10 +83,13 @@ class SearchResult:
 def search(
     ports: Sequence[PortInfo] | None = None,
     announced_at: int = ANNOUNCED_AT,
-    columns: Mapping[str, Columns] = NO_COLUMNS,
-    radio: Radio | None = None,
+    columns: Mapping[str, Columns] = NO_COLUMNS,  # of lines of numbers, by the `key` of their port
+    radio: Radio | None = None,  # None: no Bluetooth LE
 ) -> SearchResult:
-    """Listen to ports and the network for 1 to 4 s, each sensor named once; nothing is sent but to ports."""
+    """Listen to ports and the network for 1 to 4 s, each sensor named once; nothing is sent but to ports.
+
+    Ports with nothing plugged in are left alone, and those of Bluetooth, unless bound or a sensor's by their name.
+    """
     looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
     received: list[FoundSensor | Passed | LinesAt] = []
     works = [

@@ -107,7 +107,7 @@ def decoded(
     host_s: Sequence[float],
     step_s: float | None = None,
     begins: Sequence[int] = (),
-    clock: tuple[str, float] | None = None,
+    clock: tuple[str, float] | None = None,  # shared with others: its name, and after how many seconds it begins again
     again: Collection[int] = (),
 ) -> DecodedSensor:
     """Order what was received of one sensor (rows arrived at `host_s`); SI, sensor axes, host stamps."""

@@ -209,7 +209,10 @@ class _Entry:
         self._steps: list[Future[object]] = []
 
     def start(self, turn: "Future[None] | None") -> None:
-        """Add the row after `turn`; raises LibraryError if refused, not if the library is merely unavailable."""
+        """Add the row after `turn`; raises LibraryError if refused, not if the library is merely unavailable.
+
+        `on_trouble` is not called where it begins in the shelter: see `is_away`.
+        """
         self._do(self._enter, turn)
         try:
             self._steps[0].result(ROW_WAIT_S)

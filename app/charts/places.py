@@ -179,7 +179,10 @@ def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatAr
 def place_mark(
     ground: ChartGround, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
 ) -> MarkPlace:
-    """Place the bar's words where they cover least; `sizes` (w, h) by number of lines, as many as fit."""
+    """Place the bar between two `ends` (x, y) and its words where they cover least; the place is taken from then on.
+
+    `sizes` are width and height of the words with one line, two and so on; as many are kept as have room.
+    """
     top, bottom = sorted(y for _, y in ends)
     usual_x = float(ground.frame.x(usual_percent))
     all_x = map(float, ground.frame.x(CANDIDATES_PERCENT))
@@ -209,7 +212,10 @@ def place_labels(
     are_above: Sequence[bool],
     dot: float,
 ) -> list[Box | None]:
-    """Place each label by its point, inside the frame and where it covers least; None where there is no room."""
+    """Place each label by its point, inside the frame and where it covers least; None where there is no room.
+
+    `are_above`: those that want to be over their points. Places are taken in order, from then on.
+    """
     frame = ground.frame
     inside = Box(frame.left, frame.top, frame.right, frame.bottom)
     dots = [Box(x, y, x, y).grown(dot) for x, y in points]

@@ -15,7 +15,7 @@ def run(args: argparse.Namespace, _report: Report) -> Iterator[str]:
     Raises
     ------
     FileRefusedError
-        The library does not open, `required.since` is no checkpoint, or an entry is not as it was written.
+        The library does not open, `--since` is no checkpoint, or an entry is not as it was written.
     """
     try:
         since = Checkpoint.parsed(args.since) if args.since else BEGINNING

@@ -14,7 +14,7 @@ BELOW, LEAST_BELOW_DEG = 0.15, 5.0  # of the curve's range
 
 
 def lanes_of(recording: RecordingAnalysis, joint: Joint) -> Mapping[Phase, tuple[FloatArray, FloatArray]]:
-    """Give each phase's times and heights in degrees (k,), NaN after each stretch; None where hidden."""
+    """Give each phase's times and heights in degrees (k,), NaN after each; empty: curve or timing not reported."""
     gait, curve_deg = recording.gait.get(joint.side), _curve_deg(recording, joint)
     known_deg = curve_deg[np.isfinite(curve_deg)]
     if gait is None or not len(known_deg) or not recording.verdicts.leg(joint.side).timing.is_reported:

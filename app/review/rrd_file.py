@@ -30,7 +30,10 @@ BYTES = 2  # protobuf's kind of a field that has a length
 
 
 def remove_chance(path: Path, layout_name: bytes, name: bytes) -> None:
-    """Make a finished file reproducible, its layout store renamed to `name` of equal length; OSError: no end."""
+    """Make a finished file reproducible, its layout store renamed to `name` of equal length.
+
+    Raises OSError without an end, and ValueError for a file of another version of Rerun.
+    """
     with path.open("r+b") as file:
         position = FILE_HEADER_BYTES
         while True:

@@ -120,7 +120,7 @@ class Patients:
         return self._set_deleted(patient, None, Action.EDIT)
 
     def destroy(self, patient_id: UUID) -> None:
-        """Remove a patient for good, after all journals' keys; LibraryError if deleted under 30 days ago."""
+        """Remove a patient for good, after all journals' keys; LibraryError unless deleted 30 days ago."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_patient(session, patient_id)
             refuse_early(row.deleted_at, self._unit.now())

@@ -30,7 +30,7 @@ SETTLED = datetime.timedelta(days=1)  # in which somebody notices that the date 
 
 
 def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] = now_utc) -> int:
-    """Destroy what is past restoring, at every start; give the number of sessions; raises LibraryError."""
+    """Destroy what is past restoring, at every start; give the number of sessions; LibraryError or OSError."""
     library = opened.library
     before = overdue_before(opened, now())
     if before is None:

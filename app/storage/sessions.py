@@ -143,7 +143,7 @@ class Sessions:
             return tuple(stored_session(row) for row in rows)
 
     def destroy(self, session_id: UUID) -> None:
-        """Remove a visit for good, after its journals' keys; raises LibraryError if deleted under 30 days ago."""
+        """Remove a visit for good, after its journals' keys; raises LibraryError unless deleted 30 days ago."""
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_session(session, session_id)
             deleted = [at for at in (row.deleted_at, row.patient.deleted_at) if at is not None]

@@ -75,7 +75,7 @@ def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
 
 
 def reached_at(goals: Sequence[Goal], course: Course) -> tuple[GoalFigure, ...]:
-    """Give goals reached in every condition walked, each with its least favourable value, surest first."""
+    """Give goals reached in every condition that has their figures, with the least favourable value, surest first."""
     found = []
     for goal in goals:
         is_of_test = goal.column in PROTOCOLS

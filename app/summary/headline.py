@@ -90,7 +90,7 @@ def headline_of(facts: Facts) -> Headline:
 
 
 def order_of(facts: Facts, column: str, side: Side | None, found: Difference) -> tuple[bool, int, bool, float]:
-    """Give the sort key of differences of one rule: goals, joints, stance and time, foot; affected side first."""
+    """Give the sort key of differences of one rule: goals, kind, the affected side, then the one of most errors."""
     sides = tuple(Side) if side is None else (side,)
     is_of_other = side is not None and facts.affected not in (None, side)
     return not facts.part.agreed.is_chosen(column, sides), kind_of(column), is_of_other, -round(found.ratio, 1)

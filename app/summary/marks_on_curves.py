@@ -89,7 +89,10 @@ def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def gaps_of(facts: Facts) -> list[Gap]:
-    """Give where a curve leaves 2 SD of the band, as drawn and laid at the curve's height; knees rescaled too."""
+    """Give where a curve leaves 2 SD of the band, as drawn and as laid at the curve's height; none without a height.
+
+    A knee has to be outside as measured and divided by what knees over-read. Hips have no such band.
+    """
     group = facts.curves_group
     if group is None or facts.bands.are_curves_of_other_ages:
         return []

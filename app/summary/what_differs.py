@@ -26,7 +26,7 @@ from core.verdicts.measurement_error import Difference, Mark
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of
 
-ZONES, HALVES = 2.3, 1.6
+ZONES, HALVES = 2.3, 1.6  # to either edge: healthy people's differences, or errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
 
 
 def half_of_strip(found: Difference, reach: float = 1.0) -> float:
-    """Half of a drawing: healthy people's difference, else the interval, with room; all that `reach` times goes to."""
+    """Half the width of a strip: by healthy people, else by the interval; at least `reach` times what it reaches."""
     usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
     return max(usual, reach * (abs(found.difference) + found.error))
 

@@ -93,7 +93,11 @@ def standstill_message(
     are_received: bool,
     are_counted: bool,
 ) -> Message:
-    """State that the process stalled amid a recording and what was lost; empty once it is long past."""
+    """State that the process stalled amid a recording and what was lost; empty once it is long past.
+
+    `began_s` and `now_s` are on the acquisition's clock; `lost`: missing samples by sensor. `are_received`: all have
+    sent since; `are_counted`: all report their rate.
+    """
     if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_REPORTED_S:
         return NOTHING
     stated = tr("Gaitwright stalled for {seconds:.0f} s, {time} min into the recording.")

@@ -52,7 +52,7 @@ def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
 
 
 def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "tuple[Session, Analysis]":
-    """Read a session without samples, and its analysis, stored or computed now, less strides left out."""
+    """Read a session without samples, and its analysis: stored, or computed now and stored; less strides left out."""
     results, stored = opened.library.results, opened.library.sessions.get(session_id)
     reported = evaluated(stored, read_recordings(opened, stored))
     known = find_analysis(results, session_id, reported)
@@ -74,7 +74,10 @@ def sessions_of_condition(
 
 
 def session_to_analyse(opened: "OpenedLibrary", session_id: UUID) -> "tuple[Session, Callable[[bytes], None]] | None":
-    """Give a session with samples and its analysis's keeper, None: kept; raises as `session_with_samples`."""
+    """Give a session with samples and what keeps its analysis, as `packed` writes it; None: it is kept already.
+
+    What the patient's course needs of it is kept here; raises as `session_with_samples`.
+    """
     stored = opened.library.sessions.get(session_id)
     reported = evaluated(stored, read_recordings(opened, stored))
     known = find_analysis(opened.library.results, session_id, reported)

@@ -45,7 +45,11 @@ class ShownName:
 
 
 def condition_letters(recordings: Sequence[Recording]) -> dict[str, str]:
-    """Give each kept walk's condition letter by walk name; renewed straps begin another, empty beyond Z."""
+    """Give the letter of each included walk's condition, by the walk's name; empty beyond Z.
+
+    `recordings` are in order of time. A walk without a condition has a letter of its own, and so have the walks after
+    the sensors were attached again. Discarded walks have none.
+    """
     letters = dict(zip(dict.fromkeys(_conditions(recordings).values()), LETTERS, strict=False))
     return {name: letters.get(condition, "") for name, condition in _conditions(recordings).items()}
 

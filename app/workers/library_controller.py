@@ -99,7 +99,10 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """Run `call` on the thread, then `done(result)` or `failed(what, remedy)`, bound, while `owner` lives."""
+        """Run `call` on the thread, then `done(result)` or `failed(what, remedy)`, bound methods, while `owner` lives.
+
+        Without `failed` a refusal is reported by the signal `refused`.
+        """
         self._ask(self._calls, Job.of(lambda: call(self._holder.library), done, failed, owner))
 
     def record(
@@ -109,7 +112,10 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """As `run`, for beginning and ending recordings, without waiting; the `Future`: earlier calls done."""
+        """As `run`, for beginning and ending recordings: whatever else the library is asked is not waited for.
+
+        The `Future` that `call` is given is done when all that was asked before has been.
+        """
         if self._state is None:
             self._show_refusal(Job.of(nothing, None, failed, owner), *nothing_open())
             return

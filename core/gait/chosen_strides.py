@@ -18,7 +18,7 @@ from core.verdicts.walk_findings import about_walk
 
 
 def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
-    """Give the analysis without strides left out by hand, and its findings computed again."""
+    """Give the analysis without the strides that `recordings` leave out; none may have been left out of it before."""
     chosen = {recording.name: recording.left_out_s for recording in recordings if any(recording.left_out_s.values())}
     if not chosen:
         return analysis

@@ -166,7 +166,11 @@ def compare(
     speeds_m_s: Speeds = UNKNOWN,
     is_chosen_before: bool = False,
 ) -> Difference:
-    """Subtract `other` from `one`; no difference where either is not reported in `assessments`."""
+    """Subtract `other` from `one`; no difference where either is not reported in `assessments`.
+
+    `speeds_m_s`: slow walks repeat less well, and what another speed makes is taken out beside. `is_chosen_before`:
+    the measure was chosen before the visit, as a goal is, so that a sentence needs the error alone.
+    """
     nothing = math.nan
     if any(not found.is_reported for found in assessments):
         return Difference(nothing, nothing, Judgement.NOT_REPORTED)

@@ -148,7 +148,10 @@ def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
 
 
 def mean_curve(recording: RecordingAnalysis, joint: Joint) -> MeanCycle:
-    """Average the joint's angle over the strides used; NaN where shape or sign is not reported."""
+    """Average the joint's angle over the strides used, rad; NaN where shape or sign is not reported.
+
+    Its height holds only where that is reported.
+    """
     found = mean_cycle(used_cycles(recording, joint))
     stated = recording.verdicts.joint(joint)
     if together((stated.shape, stated.sign)).is_reported:

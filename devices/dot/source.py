@@ -133,7 +133,10 @@ class DotGroup:
             self.use = DotUse.RECORDING
 
     def fall_silent(self, tick: Tick | None = None) -> None:
-        """Stop streaming on any clock, so memories can be asked; raises SourceLostError, DotRefusedError."""
+        """Stop streaming on any clock, so that memories can be asked; raises SourceLostError, DotRefusedError.
+
+        After an error some may go on streaming, and are taken for what they were.
+        """
         with self._synchronising:
             self.turn += 1
             self.radio.run(_silenced(self.sensors), tick)

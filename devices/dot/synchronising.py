@@ -217,7 +217,10 @@ class _Synchronising:
 async def synchronise(
     sensors: Sequence[DotSensor], rate_hz: int, profile: int, show_message: ShowMessage, *, must_stream: bool = True
 ) -> Synchronised:
-    """Bring sensors onto one clock, the first as root; raises NotSynchronisedError or SourceRefusedError."""
+    """Bring sensors onto one clock, the first as root; raises NotSynchronisedError or SourceRefusedError.
+
+    After an error all are as if nothing had been begun, and may be tried again.
+    """
     trying = _Synchronising(sensors, rate_hz, profile, show_message)
     for _ in range(TRIES):
         if not await trying.has_succeeded():

@@ -80,7 +80,10 @@ def usual_rate(time_s: FloatArray) -> float | None:
 def repaired(
     stamps: FloatArray | Numbers, clock: FileClock, *, slack: float = 0.0, step: float | None = None
 ) -> RepairedClock:
-    """Mend wrong stamps (n,), NaN where there is none; raises FileRefusedError if it steps back for good."""
+    """Mend wrong stamps (n,), NaN where there is none; raises FileRefusedError if it steps back for good.
+
+    `slack`: so far back a stamp may lie, because stamps are of arrivals. `step`: from sample to sample, where known.
+    """
     mended = np.array(stamps, dtype=np.float64)
     rows = np.flatnonzero(np.isfinite(mended))
     times = mended[rows]
@@ -133,7 +136,10 @@ def is_later(stamps: FloatArray | Numbers) -> BoolArray:
 
 
 def unwrapped(table: Table, name: str, turns_at: int, where: str) -> Numbers:
-    """Give a counter or clock without its turns, from the first number on; raises FileRefusedError."""
+    """Give a counter or clock without its turns, from the first number on; raises FileRefusedError.
+
+    `turns_at`: the first number that it does not reach.
+    """
     raw = table.numbers[name]
     is_count = (raw >= 0) & (raw < turns_at) & (raw == np.floor(raw))
     if not is_count.all():

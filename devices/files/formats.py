@@ -59,7 +59,7 @@ FORMATS: Mapping[str, FileFormat] = {
 
 
 def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
-    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError."""
+    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError."""
     for path in files:
         _refuse_missing(path)
     every = list({path.resolve(): path for path in files}.values())

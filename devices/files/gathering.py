@@ -13,7 +13,10 @@ MOST_FILES = 500  # what is dragged may be a whole disk
 
 
 def gather(paths: Sequence[Path]) -> Gathered:
-    """Group files, or a folder's files, to trials by name; raises FileRefusedError for none or too many."""
+    """Group files to trials by format, folder and common name, in the order of names; a folder of no format is opened.
+
+    What is refused is returned beside them; raises FileRefusedError where there are no files, or too many.
+    """
     refused: list[FileRefusedError] = []
     found: dict[tuple[str, Path, str], list[str]] = {}
     for path in _opened_up(paths):

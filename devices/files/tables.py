@@ -76,10 +76,10 @@ def read_csv(
     where: str,
     numeric: Collection[str],
     *,
-    comment: str | None = None,
+    comment: str | None = None,  # lines that begin with it, before the header, are passed over
     delimiters: str = ",",
-    keep_others: bool = True,
-    has_units: bool = False,
+    keep_others: bool = True,  # as the texts that they are
+    has_units: bool = False,  # in the line after the header, see `shape_of`
     decimal: str = ".",
     header_names: str = "",
 ) -> Table:

@@ -77,7 +77,7 @@ class GroupRow:
     its own.
     `mean`, `sd`, `standard_error`, `half_interval`: of the sessions' values, in the unit that the measure's name ends
     with; sd, standard error and half of the 95 % interval are NaN under three sessions.
-    `not reported`, `with_care`, `not_measured`: walks of one side that are left out for this.
+    `withheld`, `with_care`, `not_measured`: walks of one side that are left out for this.
     """
 
     group: str

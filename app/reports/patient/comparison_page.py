@@ -47,7 +47,7 @@ WITH_HIP_WIDTH = 44 * MM  # of three beside each other
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
-    """Give what the report compares: an earlier visit, else the chosen conditions, else None.
+    """Give what the report compares: an earlier visit that has the condition; without one, the chosen conditions.
     A walk represents its condition unless another of its walks was chosen; of a visit the last walk counts.
     """
     visit, is_simulated = request.visit, request.visit.analysis.is_simulated

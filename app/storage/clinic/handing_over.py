@@ -22,7 +22,7 @@ _log = logging.getLogger(__name__)
 
 
 def hand_over(opened: OpenedLibrary) -> frozenset[UUID]:
-    """Hand over journals of ended recordings and give these; on LibraryError the earlier ones are there."""
+    """Hand over journals of ended recordings and give these; raises LibraryError or OSError, earlier ones are there."""
     shared = opened.shared
     if shared is None:
         return frozenset()

@@ -107,7 +107,7 @@ class Database:
 
     @contextmanager
     def writing(self) -> Iterator[OrmSession]:
-        """Hold the write lock, write all or nothing; raises LibraryBusyError, ChangedMeanwhileError."""
+        """Hold the write lock, write all or nothing; raises LibraryError, or its LibraryBusyError after `busy_s`."""
         self.guard()
         with _reported(), self._locked_session(self._write_engine) as session:
             yield session

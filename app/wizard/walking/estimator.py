@@ -266,7 +266,10 @@ class _Foot:
             self._go_over(change)
 
     def strides_since(self, time_s: float, kept_from_s: float) -> int:
-        """Count strides since `time_s`, contacts up to MAX_STRIDE_S apart; contacts before `kept_from_s` go."""
+        """Count strides since `time_s`, contacts up to MAX_STRIDE_S apart.
+
+        Contacts before `kept_from_s` go: another `time_s` later counts from there at the earliest.
+        """
         if time_s != self._from_s:
             self._from_s, self._passed = time_s, 0
             self.is_doubtful = False

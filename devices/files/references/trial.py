@@ -16,7 +16,7 @@ JOINTS = {"hip": "hip", "kne": "knee", "knee": "knee", "ank": "ankle", "ankle": 
 class ReferenceTrial:
     """One trial of a reference, on its own clock; any part may be empty.
 
-    `angles`: joint -> (time_s (n,), angle_rad (n,)): naN in gaps; either sign, any zero.
+    `angles`: joint -> (time_s (n,), angle_rad (n,)): NaN in gaps; either sign, any zero.
     `events`: side -> event of EVENTS -> (k,): seconds, ascending.
     `strides`: side -> (k, 3): first and last instant in seconds, and length in metres.
     """
