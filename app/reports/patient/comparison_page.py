@@ -30,6 +30,7 @@ from app.summary.numbers_in_words import (
 from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.report_dates import day
 from app.summary.request import ReportRequest
+from app.summary.set_angle import set_angle, set_angle_in_words
 from app.summary.visits import by_condition, condition_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.measures import measure_name, name_with_unit
@@ -114,7 +115,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         heading(title),
         paragraph(_what_else_changed(comparison)),
         _parts_table(comparison),
-        *_changes(comparison),
+        *_changes(comparison, shown),
         *([legend(band, columns=3)] if band else []),
         figures(pictures, columns=3 if has_hips else 2),
         _table(comparison, shown, sides),
@@ -154,8 +155,8 @@ def _parts_table(comparison: Comparison) -> Block:
     return table(columns, rows, is_dense=True)
 
 
-def _changes(comparison: Comparison) -> list[Block]:
-    """What was turned at the prosthesis before each condition, and that its walks may not show it."""
+def _changes(comparison: Comparison, shown: Facts) -> list[Block]:
+    """Return what was turned before each condition and what is measured of it, and that walks may not show it."""
     changed = [part for part in comparison.parts if part.alignment is not None]
     if not changed:
         return []
@@ -163,14 +164,21 @@ def _changes(comparison: Comparison) -> list[Block]:
         Column("", is_number=False),
         Column(tr("Changed from"), "35mm", is_number=False),
         Column(tr("Changes to the prosthesis"), "1fr", is_number=False),
+        Column(tr("Foot angle, set and measured"), "52mm", is_number=False),
     ]
+    changes = {part.name: part.alignment for part in comparison.parts}
+    patient = shown.visit.session.patient
+    side = next((one for one in Side if patient.prosthetic_side == one), None)  # of both, no walk shows one alone
     rows: list[Row] = []
     for part in comparison.parts:
-        since, words = tr("starting point"), NOTHING
+        since, words, measured = tr("starting point"), NOTHING, NOTHING
         if part.alignment is not None:
             since = typed(part.alignment.since, CONDITION_LENGTH)
             words = typed(change_in_words(part.alignment), CHANGES_LENGTH)
-        rows.append([part.letter, since, words])
+        if part is not comparison.against and side is not None:
+            found = set_angle(comparison, part, comparison.base_of(part), side, changes)
+            measured = set_angle_in_words(found) if found is not None else NOTHING
+        rows.append([part.letter, since, words, measured])
     return [table(columns, rows, is_dense=True), note(tr(NO_PROOF))]
 
 
