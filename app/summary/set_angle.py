@@ -62,6 +62,11 @@ def set_angle(
 
 def set_angle_in_words(found: SetAngle) -> str:
     """Say what was set and what is measured: "Set 3.0° plantarflexion, measured 2.9° (±0.4°)."."""
+    of_others = tr("Other changes are not measured.") if found.has_other_parts else ""
+    return " ".join(filter(None, [_in_words(found), of_others]))
+
+
+def _in_words(found: SetAngle) -> str:
     if not found.is_measured:
         return tr("The set foot angle cannot be measured here.") if found.set_deg else ""
     set_words = _direction(found.set_deg) if found.set_deg else ""

@@ -12,6 +12,7 @@ from core.gait.cycles import cycles_of, excursion_of_cycles, find_peak, range_of
 from core.gait.events import FootEvents, detect_events
 from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee, shank_to_foot
 from core.gait.foot import FootMotion
+from core.gait.inclination import tilt_by_speeding_up
 from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
@@ -95,9 +96,8 @@ def gait_in(
             **inclination_measures(mine, time_s, leaning),
         }
         if Segment.SHANK in leaning:
-            parameters["shank_to_foot_in_swing_rad"] = shank_to_foot(
-                mine, time_s, pitch_rad[side], leaning[Segment.SHANK]
-            )
+            shank_rad = leaning[Segment.SHANK] + tilt_by_speeding_up(mine, time_s)
+            parameters["shank_to_foot_in_swing_rad"] = shank_to_foot(mine, time_s, pitch_rad[side], shank_rad)
         gait[side] = SideGait(
             tuple(found),
             mine,

@@ -50,8 +50,11 @@ def test_a_foot_that_was_not_set_as_stated_is_to_be_checked() -> None:
 @pytest.mark.parametrize(
     ("swing_deg", "stated"),
     [
-        (5.4, "Foot angle unchanged (measured 0.4°, ±0.7°)."),
-        (7.0, "Foot angle not set, measured 2.0° dorsiflexion (±0.7°). Check the foot."),
+        (5.4, "Foot angle unchanged (measured 0.4°, ±0.7°). Other changes are not measured."),
+        (
+            7.0,
+            "Foot angle not set, measured 2.0° dorsiflexion (±0.7°). Check the foot. Other changes are not measured.",
+        ),
     ],
 )
 def test_where_nothing_was_set_the_foot_is_unchanged_or_to_be_checked(swing_deg: float, stated: str) -> None:
