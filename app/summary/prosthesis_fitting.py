@@ -24,7 +24,7 @@ MOST_FITTED = 3  # measures for fitting beyond their error, the surest first
 
 
 @dataclass(frozen=True)
-class Fitting:
+class ProsthesisFitting:
     """The alignments of one visit in the order walked; `comparison` begins with the starting point."""
 
     side: Side
@@ -62,7 +62,7 @@ class Fitting:
         return self.comparison.compare(measure, side, part, base)
 
 
-def fitting_of(session: Session, analysis: Analysis) -> Fitting | None:
+def fitting_of(session: Session, analysis: Analysis) -> ProsthesisFitting | None:
     """Give the visit's fitting; None without a change, or where not one leg alone is prosthetic."""
     side = next((one for one in Side if session.patient.prosthetic_side == one), None)
     parts = parts_of(analysis, session.recordings, agreed=agreed_with(session))
@@ -72,7 +72,7 @@ def fitting_of(session: Session, analysis: Analysis) -> Fitting | None:
     comparison = Comparison(Contrast.CONDITIONS, walked, is_simulated=analysis.is_simulated)
     changes = alignments_of(session.recordings)
     angles = (set_angle(comparison, part, comparison.base_of(part), side, changes) for part in walked[1:])
-    return Fitting(side, comparison, tuple(angles))
+    return ProsthesisFitting(side, comparison, tuple(angles))
 
 
 def of_sound() -> list[Measure]:
@@ -83,13 +83,13 @@ def of_both() -> list[Measure]:
     return _named(OF_BOTH)
 
 
-def write_set_angles(found: Fitting | None, path: Path) -> None:
+def write_set_angles(found: ProsthesisFitting | None, path: Path) -> None:
     """Write what was set at the foot and what is measured, a row for each alignment; raises OSError."""
     if found is not None and (rows := [*_rows(found)]):
         write_table(HEADER, rows, path)
 
 
-def _rows(found: Fitting) -> Iterator[tuple[str, ...]]:
+def _rows(found: ProsthesisFitting) -> Iterator[tuple[str, ...]]:
     for part, angle in zip(found.others, found.set_angles, strict=True):
         if angle is not None:
             agrees = ("no", "yes")[angle.agrees] if angle.is_measured else ""

@@ -14,7 +14,7 @@ from app.summary.facts import Facts, joint_of
 from app.summary.measures import Measure
 from app.summary.numbers_in_words import DAGGER, MARKS, NOTHING, care_note, dagger_note, fixed, marked, signed
 from app.summary.plain_text import CONDITION_LENGTH, typed
-from app.summary.prosthesis_fitting import Fitting, of_both, of_sound
+from app.summary.prosthesis_fitting import ProsthesisFitting, of_both, of_sound
 from app.summary.set_angle import set_angle_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.measures import measure_name, name_with_unit
@@ -30,7 +30,7 @@ MOST_DRAWN = 3  # lines of one picture
 PLOT_WIDTH = 110 * MM
 
 
-def fitting_page(found: Fitting, shown: Facts) -> list[Block]:
+def fitting_page(found: ProsthesisFitting, shown: Facts) -> list[Block]:
     """`shown` is the walk that the other pages are of."""
     latest = found.others[-MOST_CHANGED:]
     rows = [row for part in latest for row in _compared(found, part)]
@@ -47,7 +47,7 @@ def fitting_page(found: Fitting, shown: Facts) -> list[Block]:
     ]
 
 
-def _opening(found: Fitting) -> str:
+def _opening(found: ProsthesisFitting) -> str:
     """What lies between the walks, and whether what was undone came back."""
     straps = (
         tr("Sensors stayed attached throughout.")
@@ -58,7 +58,7 @@ def _opening(found: Fitting) -> str:
     return " ".join([straps, *(_returned(found, part) for part in returned)])
 
 
-def _returned(found: Fitting, part: Part) -> str:
+def _returned(found: ProsthesisFitting, part: Part) -> str:
     """Whether a repeat measures what the first walk of its setting did."""
     base = found.comparison.base_of(part)
     rows = [row for row in _compared(found, part) if row.is_reported and row.difference.is_judged]
@@ -73,14 +73,14 @@ def _returned(found: Fitting, part: Part) -> str:
     return stated.format(**pair, measures=names)
 
 
-def _compared(found: Fitting, part: Part) -> list[Compared]:
+def _compared(found: ProsthesisFitting, part: Part) -> list[Compared]:
     rows = [found.compared(measure, found.side, part) for measure in found.of_prosthetic()]
     if found.sound in found.comparison.sides:
         rows += [found.compared(measure, found.sound, part) for measure in of_sound()]
     return rows + [found.compared(measure, found.side, part) for measure in of_both()]
 
 
-def _alignments(found: Fitting) -> Block:
+def _alignments(found: ProsthesisFitting) -> Block:
     columns = [
         Column("", is_number=False),
         Column(tr("Changed from"), is_number=False),
@@ -105,7 +105,7 @@ def _alignments(found: Fitting) -> Block:
     return table(columns, rows, is_dense=True)
 
 
-def _differences(found: Fitting, latest: tuple[Part, ...]) -> Block:
+def _differences(found: ProsthesisFitting, latest: tuple[Part, ...]) -> Block:
     """Values of the starting point, then by how much each alignment differs from what it was changed from."""
     columns = [Column(tr("Measure"), "1fr", is_number=False), Column(found.start.letter)]
     columns += [Column(f"{part.letter} − {found.comparison.base_of(part).letter}") for part in latest]
@@ -120,7 +120,7 @@ def _differences(found: Fitting, latest: tuple[Part, ...]) -> Block:
     return table(columns, rows, is_dense=True)
 
 
-def _row(found: Fitting, measure: Measure, side: Side, latest: tuple[Part, ...]) -> list[Cell | str]:
+def _row(found: ProsthesisFitting, measure: Measure, side: Side, latest: tuple[Part, ...]) -> list[Cell | str]:
     value, verdict = found.start.figure(measure, side)
     first = marked(fixed(value.mean, measure.decimals), verdict)
     if verdict is Verdict.NOT_REPORTED:
@@ -151,7 +151,7 @@ def _marks() -> str:
     )
 
 
-def _picture(found: Fitting, shown: Facts) -> Picture:
+def _picture(found: ProsthesisFitting, shown: Facts) -> Picture:
     """The joint of the prosthetic side that changed by most errors: at the start, as changed, and after the return."""
     joints = [row for part in found.others for row in _compared(found, part) if row.side is found.side]
     judged = [row for row in joints if row.is_reported and row.difference.is_judged and row.measure.kind]

@@ -10,7 +10,7 @@ import pytest
 from app.exports.result_folder import write_results
 from app.reports.patient.document import facts_of, report_data
 from app.reports.patient.fitting_page import fitting_page
-from app.summary.prosthesis_fitting import SET_ANGLES, Fitting, fitting_of
+from app.summary.prosthesis_fitting import SET_ANGLES, ProsthesisFitting, fitting_of
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Side
@@ -70,7 +70,7 @@ def request_of(visit: AnalysedVisit) -> ReportRequest:
     return ReportRequest(visit, ("walk 1",), MADE_AT, "1.2.3")
 
 
-def fitting(visit: AnalysedVisit) -> Fitting:
+def fitting(visit: AnalysedVisit) -> ProsthesisFitting:
     found = fitting_of(visit.session, visit.analysis)
     assert found is not None
     return found
