@@ -30,7 +30,6 @@ from app.summary.numbers_in_words import (
 from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.report_dates import day
 from app.summary.request import ReportRequest
-from app.summary.set_angle import set_angle, set_angle_in_words
 from app.summary.visits import by_condition, condition_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.measures import measure_name, name_with_unit
@@ -98,8 +97,11 @@ def _day_of(started: str) -> str:
     return day(started) if started else tr("date not recorded")
 
 
-def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
-    """`shown` is the walk that the other pages are of: it belongs to the last part."""
+def comparison_page(comparison: Comparison, shown: Facts, *, has_fitting: bool) -> list[Block]:
+    """`shown` is the walk that the other pages are of: it belongs to the last part.
+
+    `has_fitting`: what was changed at the prosthesis has a page of its own.
+    """
     title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
     sides = [side for side in shown.first_and_second if side in comparison.sides]
     kinds = [kind for kind in JointKind if any(joint_of(kind, side) in comparison.joints for side in Side)]
@@ -115,7 +117,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         heading(title),
         paragraph(_what_else_changed(comparison)),
         _parts_table(comparison),
-        *_changes(comparison, shown),
+        *([] if has_fitting else _changes(comparison)),
         *([legend(band, columns=3)] if band else []),
         figures(pictures, columns=3 if has_hips else 2),
         _table(comparison, shown, sides),
@@ -155,8 +157,8 @@ def _parts_table(comparison: Comparison) -> Block:
     return table(columns, rows, is_dense=True)
 
 
-def _changes(comparison: Comparison, shown: Facts) -> list[Block]:
-    """Return what was turned before each condition and what is measured of it, and that walks may not show it."""
+def _changes(comparison: Comparison) -> list[Block]:
+    """Return what was turned before each condition, and that walks may not show it."""
     changed = [part for part in comparison.parts if part.alignment is not None]
     if not changed:
         return []
@@ -164,21 +166,14 @@ def _changes(comparison: Comparison, shown: Facts) -> list[Block]:
         Column("", is_number=False),
         Column(tr("Changed from"), "35mm", is_number=False),
         Column(tr("Changes to the prosthesis"), "1fr", is_number=False),
-        Column(tr("Foot angle, set and measured"), "52mm", is_number=False),
     ]
-    changes = {part.name: part.alignment for part in comparison.parts}
-    patient = shown.visit.session.patient
-    side = next((one for one in Side if patient.prosthetic_side == one), None)  # of both, no walk shows one alone
     rows: list[Row] = []
     for part in comparison.parts:
-        since, words, measured = tr("starting point"), NOTHING, NOTHING
+        since, words = tr("starting point"), NOTHING
         if part.alignment is not None:
             since = typed(part.alignment.since, CONDITION_LENGTH)
             words = typed(change_in_words(part.alignment), CHANGES_LENGTH)
-        if part is not comparison.against and side is not None:
-            found = set_angle(comparison, part, comparison.base_of(part), side, changes)
-            measured = set_angle_in_words(found) if found is not None else NOTHING
-        rows.append([part.letter, since, words, measured])
+        rows.append([part.letter, since, words])
     return [table(columns, rows, is_dense=True), note(tr(NO_PROOF))]
 
 
