@@ -229,6 +229,8 @@ class TimedCourse:
     """Everything one simulated course depends on. Within a session sensors and tissue are the session's.
 
     `silent_s`: from when to when a site's sensor sends nothing; not within a session.
+    `is_between_standing`: in a test from a chair the patient sits down before and stands up after; else the patient
+    sits from the first sample to the last.
     `manner_of_side`: sides that walk in another manner than the ordinary one.
     `change`, `changed_side`: what is added to joints and stance, in both legs or in one; time and length stay the
     course's.
@@ -242,6 +244,7 @@ class TimedCourse:
     hesitates: bool = False  # before a turn the patient waits for a moment and takes shorter steps
     slowing: float = 0.0  # by what share the speed falls from the first to the last step
     rise_s: float = 1.2  # how long rising from the chair takes
+    is_between_standing: bool = False
     silent_s: Mapping[Site, tuple[float, float]] = field(default_factory=dict)
     sites: tuple[Site, ...] = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.LEFT_FOOT, Site.RIGHT_FOOT)
     tissue: Tissue = Tissue.RIGID

@@ -24,6 +24,7 @@ from devices.simulation.walker_sensors import draw_faults, draw_mounting, draw_r
 
 FINE_HZ, MARGIN_S = 500.0, 0.25
 STANDING_S = 3.0
+SITS_DOWN_AFTER_S, STAYS_SEATED_S = 0.5, 4.0  # the latter is longer than a recording goes on after a test
 TAPE_M = (2.0, 12.0)  # of a course of 14 m, where the 10 m begin and end
 CHAIR_TO_CONE_M = 3.0
 EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left one or reached the other
@@ -176,6 +177,9 @@ def walk_course(
     planned: list[PlannedBout] = []
     is_from_chair = course.kind in (CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND)
     if is_from_chair:
+        if course.is_between_standing:
+            changes.append(SeatChange(SITS_DOWN_AFTER_S, course.rise_s, is_down=True))
+            start_s += changes[-1].end_s
         changes.append(SeatChange(start_s, course.rise_s, is_down=False))
         start_s = changes[-1].end_s
     end_s = start_s
@@ -193,6 +197,9 @@ def walk_course(
     elif is_from_chair:
         changes.append(SeatChange(end_s, course.rise_s * rng.uniform(0.9, 1.4), is_down=True))
         end_s = changes[-1].end_s
+        if course.is_between_standing:
+            changes.append(SeatChange(end_s + STAYS_SEATED_S, course.rise_s, is_down=False))
+            end_s = changes[-1].end_s
     duration_s = end_s + 2.0
     time_s = _fine_clock(duration_s)
     sway_m = sway_of(time_s, rng)

@@ -355,6 +355,8 @@ def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
 def _pivoted(by_rad: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
     """How far (n,) the foot is ahead in its turn: by so much at each toe-off, since it has pivoted on its ball."""
     total = np.zeros_like(time_s)
+    if not by_rad.any():
+        return total
     moments = zip(by_rad, steps.heel_rise_s[:-1], steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)
     for ahead, rise, off, on in moments:
         total += ahead * (smooth_step((time_s - rise) / (off - rise)) - smooth_step((time_s - off) / (on - off)))

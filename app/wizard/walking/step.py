@@ -286,9 +286,13 @@ class WalkingStep(Step):
         if self.bench.is_shown:
             label, alignment = self.bench.next_walk()
             acquisition.set_up(self.bench.chain.set_so(label, alignment))
-        acquisition.ask(RecordingKind.WALKING)
+        planned = self._timed.planned
+        if planned is None:
+            acquisition.ask(RecordingKind.WALKING)
+        else:
+            acquisition.ask_test(planned)
         self.memory.fetch.begun()
-        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, self._timed.planned)
+        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, planned)
         if (walk := self._ongoing) is not None:
             self._preview.begin_walk(walk.began_s)
             self._timed.begin(walk.began_s)
