@@ -31,52 +31,76 @@ class KeyMeaning(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PlannedTest:
-    """That a walk is a test, and when a key was pressed at its start and at its end, on the recording's clock.
+    """That a walk is a test, and what was entered about it; None where nothing was.
+
+    `start_key_s`, `end_key_s`: when a key was pressed at its start and its end, on the recording's clock.
+    `course_m`: of the course as it is laid out: from the chair to the cone, or between the tapes.
+    `lap_m`: from one turn to the next in a test of a set time; `typed_laps`: how many such laps were completed;
+    `rest_m`: how far the patient came in the lap after them.
 
     Raises
     ------
     ValueError
-        A time that is none, or an end that is not after its start.
+        A time or a length that is none, a length or a number below zero, or an end that is not after its start.
     """
 
     protocol: TimedProtocol
     start_key_s: float | None = None
     end_key_s: float | None = None
+    course_m: float | None = None
+    lap_m: float | None = None
+    typed_laps: int | None = None
+    rest_m: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("start_key_s", "end_key_s"):
+        for name in ("start_key_s", "end_key_s", "course_m", "lap_m", "typed_laps", "rest_m"):
             value = getattr(self, name)
             if value is not None and not math.isfinite(value):
-                raise ValueError(f"{name} is {value}, expected seconds or None")
+                raise ValueError(f"{name} is {value}, expected a figure or None")
+        for name in ("course_m", "lap_m"):
+            value = getattr(self, name)
+            if value is not None and value <= 0.0:
+                raise ValueError(f"{name} is {value}, expected more than 0 m")
+        for name in ("typed_laps", "rest_m"):
+            value = getattr(self, name)
+            if value is not None and value < 0:
+                raise ValueError(f"{name} is {value}, expected 0 or more")
         if self.start_key_s is not None and self.end_key_s is not None and self.end_key_s <= self.start_key_s:
             raise ValueError(f"the end {self.end_key_s} is not after the start {self.start_key_s}")
 
 
-TABLE_KEYS = ("test", "test_start_s", "test_end_s")
+TABLE_KEYS = (
+    *("test", "test_start_s", "test_end_s"),
+    *("test_course_m", "test_lap_m", "test_laps", "test_rest_m"),
+)
 
 
 def planned_table(planned: PlannedTest | None) -> dict[str, object]:
     """The keys of session.toml that say of a recording which test it is; none where it is no test."""
     if planned is None:
         return {}
-    values = (str(planned.protocol), planned.start_key_s, planned.end_key_s)
+    keys_s, course_m = (planned.start_key_s, planned.end_key_s), planned.course_m
+    values = (str(planned.protocol), *keys_s, course_m, planned.lap_m, planned.typed_laps, planned.rest_m)
     return {key: value for key, value in zip(TABLE_KEYS, values, strict=True) if value is not None}
 
 
 def planned_of_table(table: Mapping[str, object]) -> PlannedTest | None:
     """What `planned_table` wrote; None where it contains nothing, or something that no test of ours is."""
-    protocol, *keys_s = (table.get(key) for key in TABLE_KEYS)
+    protocol, *figures = (table.get(key) for key in TABLE_KEYS)
     if not isinstance(protocol, str) or protocol not in set(TimedProtocol):
         return None
-    start_s, end_s = (_seconds(value) for value in keys_s)
+    start_s, end_s, course_m, lap_m, laps, rest_m = (_figure(value) for value in figures)
+    if laps is not None and not laps.is_integer():
+        return None
+    count = None if laps is None else int(laps)
     try:
-        return PlannedTest(TimedProtocol(protocol), start_s, end_s)
+        return PlannedTest(TimedProtocol(protocol), start_s, end_s, course_m, lap_m, count, rest_m)
     except ValueError:
         return None
 
 
-def _seconds(value: object) -> float | None:
-    """A time, NaN where it is something else, None where there is none."""
+def _figure(value: object) -> float | None:
+    """A figure, NaN where it is something else, None where there is none."""
     if value is None:
         return None
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else math.nan

@@ -24,9 +24,14 @@ TWO_MINUTES = TimedCourse(
 )
 
 
-def timed(session: Session, protocol: TimedProtocol, keys_s: tuple[float, ...] = ()) -> TimedTest:
+def timed(session: Session, protocol: TimedProtocol, keys_s: tuple[float, float] | None = None) -> TimedTest:
+    start_s, end_s = keys_s or (None, None)
+    return held(session, PlannedTest(protocol, start_s, end_s))
+
+
+def held(session: Session, planned: PlannedTest) -> TimedTest:
     tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
-    return time_test(tracks, session.recordings[-1], PlannedTest(protocol, *keys_s))
+    return time_test(tracks, session.recordings[-1], planned)
 
 
 def with_course(session: Session, course: Recording) -> Session:
