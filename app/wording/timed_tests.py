@@ -10,7 +10,7 @@ import math
 from app.wording.body import name_of
 from app.wording.numbers import clock
 from app.wording.translation import figure_text, joined, later, tr, tr_n
-from core.timed.found import NotMeasured, TimedTest
+from core.timed.found import DistanceSource, NotMeasured, NotValid, Part, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
 
 ALLOWED_PERCENT = 3.0  # more than that off the tape, the sensors' distance is not to be read
@@ -30,6 +30,29 @@ def name_of_test(protocol: TimedProtocol) -> str:
     }[protocol]
 
 
+def course_label(protocol: TimedProtocol) -> str:
+    """What the length of a test's course is called; empty where it has none."""
+    return {
+        TimedProtocol.TWO_MINUTES: tr("Lap"),
+        TimedProtocol.SIX_MINUTES: tr("Lap"),
+        TimedProtocol.UP_AND_GO: tr("Chair to cone"),
+    }.get(protocol, "")
+
+
+def instruction(planned: PlannedTest) -> str:
+    """How a test is done, for who leads it."""
+    return {
+        TimedProtocol.TEN_METRES: tr(
+            "A straight 14 m: 2 m run-in, 10 m timed, 2 m run-out. Stand still for 1 s, then walk."
+        ),
+        TimedProtocol.TWO_MINUTES: tr("Stand still for 1 s, then walk to and fro for 2 minutes."),
+        TimedProtocol.SIX_MINUTES: tr("Stand still for 1 s, then walk to and fro for 6 minutes."),
+        TimedProtocol.UP_AND_GO: tr("Sit still. Rise, walk round the cone, walk back and sit down."),
+        TimedProtocol.SIT_TO_STAND: tr("Sit still. Rise and sit down, until standing for the fifth time."),
+        TimedProtocol.STAIRS: tr("Stand still for 1 s before the stairs, then climb up and down."),
+    }[planned.protocol]
+
+
 def planned_words(planned: PlannedTest | None) -> str:
     """Which test a walk is, with the instants of its keys: "10-metre walk, key at the start: 3.2 s"."""
     if planned is None:
@@ -40,6 +63,100 @@ def planned_words(planned: PlannedTest | None) -> str:
     if planned.end_key_s is not None:
         stated.append(tr("end key pressed at {at:.1f} s").format(at=planned.end_key_s))
     return ", ".join(stated)
+
+
+def name_of_part(part: Part) -> str:
+    """A part of an up and go as it is called."""
+    return {
+        Part.RISE: tr("Rise"),
+        Part.WALK_OUT: tr("Walk out"),
+        Part.TURN: tr("Turn"),
+        Part.WALK_BACK: tr("Walk back"),
+        Part.TURN_TO_SIT: tr("Turn to sit"),
+        Part.SIT: tr("Sit down"),
+    }[part]
+
+
+def not_valid_sentence(test: TimedTest) -> str:
+    """Why a test is not the one that it is called, the gravest reason; empty where it is, or nobody can tell."""
+    if not test.not_valid:
+        return ""
+    course, found = (figure_text(value, ".3g") for value in (test.course_m, test.course_found_m))
+    walked = figure_text(test.sensor_distance_m, ".1f")
+    reason = {
+        NotValid.COURSE_SHORTER: tr("{found} m from the chair to the turn, the course is {course} m"),
+        NotValid.COURSE_LONGER: tr("{found} m from the chair to the turn, the course is {course} m"),
+        NotValid.NO_RISE: tr("no rise from the chair"),
+        NotValid.NO_TURN: tr("{walked} m walked without a turn, the course turns at {course} m"),
+        NotValid.NO_TURN_TO_SIT: tr("no turn before sitting down"),
+        NotValid.MORE_TURNS: tr("{turns} turns, the course has 2"),
+        NotValid.ELSEWHERE: tr("seated elsewhere than at the start"),
+        NotValid.LAP_DIFFERS: tr("laps of {found} m by the feet, {course} m entered"),
+        NotValid.DISTANCE_DIFFERS: tr("{distance} m entered, {walked} m by the feet"),
+    }[test.not_valid[0]]
+    distance = figure_text(test.distance_m, ".0f")
+    stated = reason.format(found=found, course=course, walked=walked, turns=len(test.turns), distance=distance)
+    return tr("Not valid: {reason}.").format(reason=stated)
+
+
+def not_compared_sentence(test: TimedTest) -> str:
+    """What was timed of a test that is not valid, and that nothing is made of it."""
+    return tr("{result} Not compared, and in no mean.").format(result=result_sentence(test))
+
+
+def remedy_sentence(test: TimedTest) -> str:
+    """What to do about a test that is not valid; empty where it is."""
+    if not test.not_valid:
+        return ""
+    repeat = tr("Repeat the test on a course of {course} m, or enter the length that was laid out.")
+    return {
+        NotValid.COURSE_SHORTER: repeat,
+        NotValid.COURSE_LONGER: repeat,
+        NotValid.NO_RISE: tr("Repeat the test, seated at the start."),
+        NotValid.NO_TURN: tr("Repeat the test: round the cone and back to the chair."),
+        NotValid.NO_TURN_TO_SIT: tr("Repeat the test: turn round before sitting down."),
+        NotValid.MORE_TURNS: tr("Repeat the test without further turns."),
+        NotValid.ELSEWHERE: tr("Repeat the test: back to the chair that it began from."),
+        NotValid.LAP_DIFFERS: tr("Check the length of the lap."),
+        NotValid.DISTANCE_DIFFERS: tr("Check the laps, their length and the rest."),
+    }[test.not_valid[0]].format(course=figure_text(test.course_m, ".3g"))
+
+
+def source_sentence(test: TimedTest) -> str:
+    """Where the distance of a set time is from; empty of any other test, and without a distance."""
+    if test.definition.duration_s is None or not math.isfinite(test.distance_m):
+        return ""
+    stated = {
+        DistanceSource.TYPED: tr("Distance: laps entered, {lap} m each"),
+        DistanceSource.FOUND_LAPS: tr("Distance: laps detected, {lap} m each"),
+    }.get(test.distance_source, tr("Distance: foot sensors"))
+    stated = stated.format(lap=figure_text(test.course_m, ".3g"))
+    if test.distance_source is DistanceSource.FEET or not math.isfinite(test.sensor_distance_m):
+        return f"{stated}."
+    feet = figure_text(test.sensor_distance_m, ".0f")
+    return tr("{source}; the foot sensors measured {feet} m.").format(source=stated, feet=feet)
+
+
+def sentences_of(test: TimedTest) -> list[str]:
+    """All that is stated of a test behind its result, in order; what does not hold of it is left out."""
+    stated = (
+        why_sentence(test),
+        source_sentence(test),
+        tape_sentence(test),
+        slowest_sentence(test),
+        stairs_sentence(test),
+        course_sentence(test),
+        pauses_sentence(test),
+    )
+    return [one for one in stated if one]
+
+
+def slowest_sentence(test: TimedTest) -> str:
+    """Which of several rises took longest; empty where there are not several."""
+    if test.definition.rises < 2 or len(test.rises) < 2:
+        return ""
+    number, slowest = max(enumerate(test.rises, 1), key=lambda one: one[1].time_s)
+    return tr("Slowest rise: number {number}, {time} s.").format(number=number, time=figure_text(slowest.time_s, ".2f"))
 
 
 def start_words(protocol: TimedProtocol) -> str:
@@ -141,20 +258,11 @@ def pauses_sentence(test: TimedTest) -> str:
 
 
 def stairs_sentence(test: TimedTest) -> str:
-    """How many strides led up and down, and how long they took; empty where none did."""
-    stated = []
-    for is_up, words in (
-        (True, tr("strides up: {count}, mean duration {time:.2f} s")),
-        (False, tr("strides down: {count}, mean duration {time:.2f} s")),
-    ):
-        times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
-        if times_s:
-            stated.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
-    return (
-        tr("Strides on stairs are excluded from the means of walking: {strides}.").format(strides="; ".join(stated))
-        if stated
-        else ""
-    )
+    """How many strides led up and down, which no mean of walking holds; empty where none did."""
+    up, down = (sum(one.is_up is is_up for one in test.stairs) for is_up in (True, False))
+    if not test.stairs:
+        return ""
+    return tr("Strides on stairs: {up} up, {down} down; excluded from the means of walking.").format(up=up, down=down)
 
 
 def course_sentence(test: TimedTest) -> str:

@@ -182,8 +182,8 @@ class WalkingBar:
         return "" if test is None else tr("Start {test}").format(test=within_sentence(name_of_test(test.protocol)))
 
     def _armed(self, label: str) -> str:
-        """What the next walk is, where it is a timed test: T chooses one also where no chooser is in sight."""
-        return "" if self._timed.planned is None else self._timed.next_words(label)
+        """Which test the next walk is, or that it is none: T chooses one also where no chooser is in sight."""
+        return tr("No timed test; T chooses one.") if self._timed.planned is None else self._timed.next_words(label)
 
     def _saved(self) -> str:
         """Say that what comes in is saved, only while the journal has it so."""

@@ -82,10 +82,7 @@ def test_strides_on_stairs_are_reported_apart_where_there_are_some() -> None:
     assert stairs_sentence(TEN) == ""
     strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
     reported = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
-    assert reported == (
-        "Strides on stairs are excluded from the means of walking: strides up: 2, mean duration 1.50 s; strides "
-        "down: 1, mean duration 1.50 s."
-    )
+    assert reported == "Strides on stairs: 2 up, 1 down; excluded from the means of walking."
 
 
 def test_an_error_that_was_not_verified_has_a_dagger() -> None:
