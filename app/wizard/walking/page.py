@@ -105,7 +105,7 @@ class WalkingPage(QWidget):
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
         controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit]
-        controls += [field.line_edit for field in self.timed_result.laps.fields]
+        controls += [field.line_edit for field in self.timed_result.entry.fields]
         controls += [self.next.course.field.line_edit, self.next.test]
         return [one for one in controls if one.isVisibleTo(self)]
 

@@ -84,7 +84,7 @@ class WalkingStep(Step):
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
             page.next.course.entered.connect(self._on_course_entered)
-            page.timed_result.laps_entered.connect(self._on_laps_entered)
+            page.timed_result.course_entered.connect(self._on_recorded_course_entered)
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
             page.walks.undo_pressed.connect(self._on_keep_pressed)
@@ -449,9 +449,9 @@ class WalkingStep(Step):
         self.changed.emit()
 
     @Slot()
-    def _on_laps_entered(self) -> None:
-        if (planned := self.page.timed_result.laps.planned) is not None:
-            self._timed.enter_laps(planned)
+    def _on_recorded_course_entered(self) -> None:
+        if (planned := self.page.timed_result.entry.planned) is not None:
+            self._timed.correct(planned)
 
     @Slot()
     def _on_change_reported(self) -> None:

@@ -195,8 +195,8 @@ class TimedControl(QObject):
             failure=failure_in_words() if self._visit.evaluation.has_failed else None,
         )
 
-    def enter_laps(self, planned: PlannedTest) -> None:
-        """Take the laps of the latest test as they were counted beside it."""
+    def correct(self, planned: PlannedTest) -> None:
+        """Take what was entered of the latest test after it."""
         walk = self._visit.recordings.walks[-1]
         self._visit.recordings.change(walk, lambda reported: replace(reported, test=planned))
 

@@ -22,7 +22,7 @@ from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, SpanStrip, TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.wizard.walking.lap_entry import LapEntry
+from app.wizard.walking.course_entry import CourseEntry
 from app.wording.timed_tests import (
     error_words,
     name_of_test,
@@ -79,11 +79,11 @@ class TimedResult:
 
 
 class TimedResultView(QWidget):
-    """In the place of the curves, between walks. `laps_entered`: of the latest test."""
+    """In the place of the curves, between walks. `course_entered`: of the latest test."""
 
     accessible_role = QAccessible.Role.Grouping
 
-    laps_entered = Signal()
+    course_entered = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -91,18 +91,18 @@ class TimedResultView(QWidget):
         self.first = Text(size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(tone="ink2", wraps=True)
         self.not_valid = Notice(size=20)
-        self.laps = LapEntry()
+        self.entry = CourseEntry()
         self.attempts = CellTable(tr("Attempts"))
         self.parts = CellTable(tr("Test sections"))
         self.course = CourseCard()
         self.errors = Text(size=12, tone="ink2", wraps=True)
         self._build()
-        self.laps.entered.connect(self.laps_entered)
+        self.entry.entered.connect(self.course_entered)
 
     def show_state(self, state: TimedResult) -> None:
         found = state.latest.found
         self._show_words(state)
-        self.laps.show_test(state.latest.planned)
+        self.entry.show_test(state.latest.planned)
         self.attempts.show_rows(*_attempts(state))
         is_compared = state.lane is not None and state.latest.counts
         self.course.setVisible(is_compared)
@@ -163,7 +163,7 @@ class TimedResultView(QWidget):
         cards = ((self._attempts_card, 1), (self._parts_card, 1))
         self._tables = lay_out(QBoxLayout(QBoxLayout.Direction.TopToBottom), *cards, spacing=BETWEEN)
         inside = QWidget()
-        parts = (self.not_valid, head, self.laps, self._tables, self.course, self.errors, 1)
+        parts = (self.not_valid, head, self.entry, self._tables, self.course, self.errors, 1)
         lay_out(QVBoxLayout(inside), *parts, margins=0, spacing=BETWEEN)
         lay_out(QVBoxLayout(self), scrolled(inside, is_upright=False), margins=0)
 
