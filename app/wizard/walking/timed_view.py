@@ -31,7 +31,7 @@ NO_FIGURE = "\N{EN DASH}"
 RUN_IN_M, RUN_OUT_M = 2.0, 2.0
 SHOWN_STEPS = 24
 BEFORE_STATUS, BEHIND_STATUS = 42, 18  # its dot, and the room round it
-UP_AND_GO_M = 6.0  # there and back
+UP_AND_GO_M = 3.0  # where no course was entered
 LONG_S = 100.0  # more digits with a tenth than there is room for
 
 
@@ -299,7 +299,8 @@ def _share(state: TimedViewState) -> float:
     if definition.rises > 1:
         return min(1.0, _rises(state) / definition.rises)
     metres = found.distance_m if math.isfinite(found.distance_m) else 0.0
-    required_m = definition.length_m or (UP_AND_GO_M if definition.rises else 0.0)
+    there_and_back_m = 2.0 * (found.planned.course_m or UP_AND_GO_M)
+    required_m = definition.length_m or (there_and_back_m if definition.rises else 0.0)
     return min(0.99, metres / required_m) if required_m else 0.0
 
 
@@ -316,7 +317,8 @@ def _middle_words(state: TimedViewState) -> str:
     if definition.rises > 1:
         return tr("{count} of {required} rises").format(count=_rises(state), required=definition.rises)
     if definition.rises:
-        return tr("3 m, turn, 3 m back") if not turns else tr("turned")
+        course = figure_text(state.readout.planned.course_m or UP_AND_GO_M, ".3g")
+        return tr("{course} m, turn, {course} m back").format(course=course) if not turns else tr("turned")
     laps = tr("Lap {lap}").format(lap=turns + 1)
     if definition.duration_s is None:
         return laps
