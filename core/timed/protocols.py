@@ -156,6 +156,7 @@ class Definition:
     duration_s: float | None = None  # of a test of a set time
     tape_m: tuple[float, float] | None = None
     rises: int = 0  # how often the patient rises
+    course_m: float | None = None  # from the chair to the cone
     is_walked: bool = True  # whether there are strides in it: a patient who rises and sits makes none
     errors: tuple[KnownError, ...] = ()
 
@@ -198,6 +199,7 @@ DEFINITIONS: Mapping[TimedProtocol, Definition] = {
         _LEFT_SEAT,
         "the thighs have come nine tenths of the way down",
         rises=1,
+        course_m=3.0,
         errors=(_worst("distance_percent", 2.3, 50), _worst("time_s", 0.06, 50)),
     ),
     TimedProtocol.STAIRS: Definition(

@@ -6,7 +6,7 @@ a swing does not count.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -40,13 +40,15 @@ USUAL_STRIDE_S = 1.2  # where no stride shows it
 class FootSteps:
     """One foot's swings, ascending: when it left, when it landed, and where to (k,).
 
-    `length_m` is how far it went over the floor, `climb_m` how much higher it came to stand.
+    `length_m` is how far it went over the floor, `climb_m` how much higher it came to stand. `heading_rad` (k, 2) is
+    its direction in the stances before and after, to the left of its first.
     """
 
     toe_off_s: FloatArray
     contact_s: FloatArray
     length_m: FloatArray
     climb_m: FloatArray
+    heading_rad: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,14 +170,25 @@ def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> B
             speed += _rate(time_s, swings.toe_off_s, swings.contact_s, way_m)
             turning += _rate(time_s, swings.toe_off_s, swings.contact_s, swings.heading_rad.ravel())
         names = ("toe_off_s", "contact_s", "arc_m", "climb_m")
-        every = [[np.empty(0), *(getattr(swings, name) for swings in foot.swings)] for name in names]
-        steps[side] = FootSteps(*(np.concatenate(one) for one in every))
+        every = {name: [np.empty(0), *(getattr(swings, name) for swings in foot.swings)] for name in names}
+        off_s, on_s, length_m, climb_m = (np.concatenate(every[name]) for name in names)
+        steps[side] = FootSteps(off_s, on_s, length_m, climb_m, _chained(foot.swings))
         silences += _silences(foot, start_s, end_s)
         speeds.append(speed)
         turnings.append(turning)
     # without the rise and fall of speed in each step, which the body has less of than the feet
-    way_m = moving_mean(_total(speeds), max(1, round(0.5 * _usual_stride_s(steps) / STEP_S)))
+    way_m = moving_mean(_total(speeds), max(1, round(0.5 * usual_stride_s(steps) / STEP_S)))
     return BodyWay(time_s, way_m, _total(turnings), steps, tuple(silences))
+
+
+def _chained(swings: tuple[FootSwings, ...]) -> FloatArray:
+    """The headings (k, 2) of all swings, each piece's going on from those before: a standing foot does not turn."""
+    parts = [np.empty((0, 2))]
+    for one in swings:
+        if len(one.heading_rad):
+            last = parts[-1][-1, 1] if len(parts[-1]) else 0.0
+            parts.append(one.heading_rad - one.heading_rad[0, 0] + last)
+    return np.concatenate(parts)
 
 
 def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
@@ -238,7 +251,7 @@ def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
     return np.asarray(chord_m / np.sinc(half / np.pi))
 
 
-def _usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
+def usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
     times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in feet.values())])
     return float(np.median(times[times < MAX_STRIDE_S])) if np.any(times < MAX_STRIDE_S) else USUAL_STRIDE_S
 
@@ -260,7 +273,7 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
     """Every turn of 60 deg and more, by the heading over the time of one stride."""
     if not len(way.time_s):
         return ()
-    half = max(1, round(0.5 * _usual_stride_s(way.feet) / STEP_S))
+    half = max(1, round(0.5 * usual_stride_s(way.feet) / STEP_S))
     padded = np.concatenate([np.full(half, way.heading_rad[0]), way.heading_rad, np.full(half, way.heading_rad[-1])])
     change = padded[2 * half :] - padded[: -2 * half]
     spans: list[tuple[int, int, float]] = []

@@ -45,11 +45,16 @@ class DemonstrationPatient(ReplaySource):
         return super().ask(kind)
 
     def perform(self, planned: PlannedTest) -> None:
-        """Perform a timed test, then stand."""
+        """Perform a timed test on a course as it is planned, then stand."""
         with self._asking:
             self._courses += 1
             kind, seed = CourseKind(str(planned.protocol)), self._settings.seed + self._courses
-        self._walk([TimedCourse(kind, seed, self.course_speed_m_s, is_between_standing=True)])
+        course = TimedCourse(kind, seed, self.course_speed_m_s, is_joined=True)
+        if planned.lap_m is not None:
+            course = replace(course, lap_m=planned.lap_m)
+        if planned.course_m is not None:
+            course = replace(course, up_and_go=replace(course.up_and_go, cone_m=planned.course_m))
+        self._walk([course])
 
     def _walk(self, walks: Sequence[Walk | TimedCourse]) -> None:
         """Walk the last of these, which is made beside; not where something else is asked meanwhile."""
