@@ -9,11 +9,16 @@ import math
 
 from app.wording.body import name_of
 from app.wording.numbers import clock
-from app.wording.translation import figure_text, joined, later, tr, tr_n
+from app.wording.translation import figure_text, joined, later, short_figure, tr, tr_n
 from core.timed.found import DistanceSource, NotMeasured, NotValid, Part, TimedTest
-from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
+from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol, course_of
 
+RUN_IN_AND_OUT_M = 4.0
 ALLOWED_PERCENT = 3.0  # more than that off the tape, the sensors' distance is not to be read
+GRAVEST_FIRST = (
+    *(NotValid.NO_RISE, NotValid.NO_TURN, NotValid.MORE_TURNS, NotValid.COURSE_SHORTER, NotValid.COURSE_LONGER),
+    *(NotValid.NO_TURN_TO_SIT, NotValid.ELSEWHERE, NotValid.LAP_DIFFERS, NotValid.DISTANCE_DIFFERS),
+)
 DAGGER = "\N{DAGGER}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 
@@ -33,6 +38,7 @@ def name_of_test(protocol: TimedProtocol) -> str:
 def course_label(protocol: TimedProtocol) -> str:
     """What the length of a test's course is called; empty where it has none."""
     return {
+        TimedProtocol.TEN_METRES: tr("Between the tapes"),
         TimedProtocol.TWO_MINUTES: tr("Lap"),
         TimedProtocol.SIX_MINUTES: tr("Lap"),
         TimedProtocol.UP_AND_GO: tr("Chair to cone"),
@@ -41,16 +47,18 @@ def course_label(protocol: TimedProtocol) -> str:
 
 def instruction(planned: PlannedTest) -> str:
     """How a test is done, for who leads it."""
+    course_m = course_of(planned) or 0.0
+    straight = tr("A straight {whole} m: 2 m run-in, {course} m timed, 2 m run-out. Stand still for 1 s, then walk.")
     return {
-        TimedProtocol.TEN_METRES: tr(
-            "A straight 14 m: 2 m run-in, 10 m timed, 2 m run-out. Stand still for 1 s, then walk."
+        TimedProtocol.TEN_METRES: straight.format(
+            all=short_figure(course_m + 4.0, 2), course=short_figure(course_m, 2)
         ),
         TimedProtocol.TWO_MINUTES: tr("Stand still for 1 s, then walk to and fro for 2 minutes."),
         TimedProtocol.SIX_MINUTES: tr("Stand still for 1 s, then walk to and fro for 6 minutes."),
         TimedProtocol.UP_AND_GO: tr("Sit still. Rise, walk round the cone, walk back and sit down."),
         TimedProtocol.SIT_TO_STAND: tr("Sit still. Rise and sit down, until standing for the fifth time."),
         TimedProtocol.STAIRS: tr("Stand still for 1 s before the stairs, then climb up and down."),
-    }[planned.protocol]
+    }[planned.protocol].format(whole=short_figure(course_m + RUN_IN_AND_OUT_M, 2), course=short_figure(course_m, 2))
 
 
 def planned_words(planned: PlannedTest | None) -> str:
@@ -78,24 +86,33 @@ def name_of_part(part: Part) -> str:
 
 
 def not_valid_sentence(test: TimedTest) -> str:
-    """Why a test is not the one that it is called, the gravest reason; empty where it is, or nobody can tell."""
+    """Why a test is not the one that it is called, by the gravest reason; empty where nothing shows that."""
     if not test.not_valid:
         return ""
-    course, found = (figure_text(value, ".3g") for value in (test.course_m, test.course_found_m))
-    walked = figure_text(test.sensor_distance_m, ".1f")
+    first = min(test.not_valid, key=GRAVEST_FIRST.index)
+    length = tr("{found} m from the chair to the turn, the course is {course} m")
+    turns = tr("{turns} turns, the course has 2")
+    if test.protocol is TimedProtocol.TEN_METRES:
+        length = tr("{walked} m by the feet, {course} m between the tapes")
+        turns = tr("turned round on the way")
     reason = {
-        NotValid.COURSE_SHORTER: tr("{found} m from the chair to the turn, the course is {course} m"),
-        NotValid.COURSE_LONGER: tr("{found} m from the chair to the turn, the course is {course} m"),
+        NotValid.COURSE_SHORTER: length,
+        NotValid.COURSE_LONGER: length,
         NotValid.NO_RISE: tr("no rise from the chair"),
         NotValid.NO_TURN: tr("{walked} m walked without a turn, the course turns at {course} m"),
         NotValid.NO_TURN_TO_SIT: tr("no turn before sitting down"),
-        NotValid.MORE_TURNS: tr("{turns} turns, the course has 2"),
+        NotValid.MORE_TURNS: turns,
         NotValid.ELSEWHERE: tr("seated elsewhere than at the start"),
         NotValid.LAP_DIFFERS: tr("laps of {found} m by the feet, {course} m entered"),
         NotValid.DISTANCE_DIFFERS: tr("{distance} m entered, {walked} m by the feet"),
-    }[test.not_valid[0]]
-    distance = figure_text(test.distance_m, ".0f")
-    stated = reason.format(found=found, course=course, walked=walked, turns=len(test.turns), distance=distance)
+    }[first]
+    stated = reason.format(
+        found=figure_text(test.course_found_m, ".1f"),
+        course=short_figure(test.course_m, 2),
+        walked=figure_text(test.sensor_distance_m, ".1f"),
+        distance=short_figure(test.distance_m, 1),
+        turns=sum(turn.is_about for turn in test.turns),
+    )
     return tr("Not valid: {reason}.").format(reason=stated)
 
 
@@ -119,7 +136,7 @@ def remedy_sentence(test: TimedTest) -> str:
         NotValid.ELSEWHERE: tr("Repeat the test: back to the chair that it began from."),
         NotValid.LAP_DIFFERS: tr("Check the length of the lap."),
         NotValid.DISTANCE_DIFFERS: tr("Check the laps, their length and the rest."),
-    }[test.not_valid[0]].format(course=figure_text(test.course_m, ".3g"))
+    }[min(test.not_valid, key=GRAVEST_FIRST.index)].format(course=short_figure(test.course_m, 2))
 
 
 def source_sentence(test: TimedTest) -> str:
@@ -130,7 +147,7 @@ def source_sentence(test: TimedTest) -> str:
         DistanceSource.TYPED: tr("Distance: laps entered, {lap} m each"),
         DistanceSource.FOUND_LAPS: tr("Distance: laps detected, {lap} m each"),
     }.get(test.distance_source, tr("Distance: foot sensors"))
-    stated = stated.format(lap=figure_text(test.course_m, ".3g"))
+    stated = stated.format(lap=short_figure(test.course_m, 2))
     if test.distance_source is DistanceSource.FEET or not math.isfinite(test.sensor_distance_m):
         return f"{stated}."
     feet = figure_text(test.sensor_distance_m, ".0f")
@@ -168,16 +185,17 @@ def start_words(protocol: TimedProtocol) -> str:
     return tr("first step after standing still for 1 s")
 
 
-def end_words(protocol: TimedProtocol) -> str:
+def end_words(planned: PlannedTest) -> str:
     """What ends it where no key does."""
+    further = tr("{course} m further on, by the sensors").format(course=short_figure(course_of(planned) or 0.0, 2))
     return {
-        TimedProtocol.TEN_METRES: tr("10 m further on, by the sensors"),
+        TimedProtocol.TEN_METRES: further,
         TimedProtocol.TWO_MINUTES: tr("after 2:00 min"),
         TimedProtocol.SIX_MINUTES: tr("after 6:00 min"),
         TimedProtocol.UP_AND_GO: tr("seated again"),
         TimedProtocol.SIT_TO_STAND: tr("standing for the fifth time"),
         TimedProtocol.STAIRS: tr("when the last step ends"),
-    }[protocol]
+    }[planned.protocol]
 
 
 def reason_words(reason: NotMeasured) -> str:

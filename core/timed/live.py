@@ -19,7 +19,7 @@ from core.signal.orientation import oriented
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import Track
 from core.timed.found import NotMeasured, TimedTest
-from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
+from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest
 from core.timed.seat import NO_SEAT, STEP_S, SeatMotions, motions_of_tilt
 from core.timed.timing import origin_of, timed
 from core.timed.way import BodyWay, FootSwings, ReceivedFoot, moving_pieces, swings_of, way_of
@@ -89,16 +89,16 @@ class LiveTest:
 
     def __init__(
         self,
-        protocol: TimedProtocol,
+        planned: PlannedTest,
         upright: Mapping[Site, FloatArray],
         rigid_sides: frozenset[Side],
         feet: frozenset[Side],
         from_s: float,
     ) -> None:
-        self.planned = PlannedTest(protocol)  # set by the screen, read by the estimator
+        self.planned = planned  # its keys are set by the screen, and read by the estimator
         self._from_s = from_s
         self._feet = {side: _LiveFootWay(side, side in rigid_sides, from_s) for side in Side if side in feet}
-        chair = DEFINITIONS[protocol].is_from_chair
+        chair = DEFINITIONS[planned.protocol].is_from_chair
         self._thighs = {site: _LiveThigh(up, from_s) for site, up in upright.items() if chair}
         self._looked_s = self._now_s = -math.inf
         self.state = LiveReadout(self.planned)

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 
@@ -215,3 +215,18 @@ DEFINITIONS: Mapping[TimedProtocol, Definition] = {
         errors=(_worst("time_s", 0.08, 40),),
     ),
 }
+
+
+def course_of(planned: PlannedTest) -> float | None:
+    """Give the length of the course as entered, else as the test has it, m; None where it has none, or no lap."""
+    definition = DEFINITIONS[planned.protocol]
+    return planned.course_m or planned.lap_m or definition.course_m or definition.length_m
+
+
+def with_course(planned: PlannedTest, length_m: float | None) -> PlannedTest:
+    """Enter the length of the course, m, of a test of a set time its lap; None: as the test has it."""
+    definition = DEFINITIONS[planned.protocol]
+    if definition.duration_s is not None:
+        return replace(planned, lap_m=length_m)
+    is_own = length_m == (definition.course_m or definition.length_m)
+    return replace(planned, course_m=None if is_own else length_m)

@@ -13,7 +13,7 @@ from app.widgets.text import Text
 from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M
 from app.wording.timed_tests import course_label
 from app.wording.translation import tr
-from core.timed.protocols import DEFINITIONS, PlannedTest
+from core.timed.protocols import DEFINITIONS, PlannedTest, course_of, with_course
 
 MOST_LAPS = 200
 
@@ -45,11 +45,9 @@ class CourseEntry(Card):
     def planned(self) -> PlannedTest | None:
         if (shown := self._shown) is None:
             return None
-        if not _has_laps(shown):
-            return replace(shown, course_m=self.length.value)
         laps = self.laps.value
         count = None if laps is None else int(laps)
-        return replace(shown, lap_m=self.length.value, typed_laps=count, rest_m=self.rest.value)
+        return replace(with_course(shown, self.length.value), typed_laps=count, rest_m=self.rest.value)
 
     def show_test(self, planned: PlannedTest) -> None:
         """Show what was entered for a test that has a course, and nothing for others."""
@@ -59,7 +57,7 @@ class CourseEntry(Card):
         self._caption.setText(label)
         self.length.set_label(label)
         self._counted.setVisible(_has_laps(planned))
-        values = (planned.course_m or planned.lap_m, planned.typed_laps, planned.rest_m)
+        values = (course_of(planned), planned.typed_laps, planned.rest_m)
         for field, value in zip(self.fields, values, strict=True):
             if not field.line_edit.hasFocus():
                 field.set_value(value)

@@ -14,7 +14,7 @@ from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
 from app.wording.timed_tests import course_label, name_of_test
 from app.wording.translation import tr
-from core.timed.protocols import PlannedTest, TimedProtocol
+from core.timed.protocols import PlannedTest, TimedProtocol, course_of
 
 LEAST, MOST = 120, 340  # px of the box
 SHORTEST_M, LONGEST_M = 1.0, 200.0
@@ -87,7 +87,7 @@ class CourseField(QWidget):
         self._caption.setText(label)
         self.field.set_label(label)
         if planned is not None and not self.field.line_edit.hasFocus():
-            self.field.set_value(planned.course_m or planned.lap_m)
+            self.field.set_value(course_of(planned))
 
     def take_focus(self) -> None:
         self.field.line_edit.setFocus(Qt.FocusReason.ShortcutFocusReason)

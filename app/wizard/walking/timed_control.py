@@ -24,9 +24,7 @@ from core.body import Segment
 from core.timed.found import TimedTest
 from core.timed.live import RUN_OUT_S, LiveReadout, LiveTest
 from core.timed.measures import COLUMNS
-from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
-
-UP_AND_GO_M = 3.0  # as the test has it
+from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol, with_course
 
 if TYPE_CHECKING:
     from app.editing.session_recording import SessionRecording
@@ -47,7 +45,7 @@ class TimedControl(QObject):
         self.earlier = EarlierTests(visit, self)
         self.earlier.changed.connect(self.changed)
         self.protocol: TimedProtocol | None = None
-        self._courses_m: dict[TimedProtocol, float | None] = {TimedProtocol.UP_AND_GO: UP_AND_GO_M}
+        self._courses_m: dict[TimedProtocol, float | None] = {}  # as entered
         self.is_course_wrong = False  # what was typed is no length
         self._estimator: WalkingEstimator | None = None
         self._live: LiveTest | None = None
@@ -60,10 +58,7 @@ class TimedControl(QObject):
         """What the next walk is, as its recording names it."""
         if self.protocol is None:
             return None
-        length_m = self._courses_m.get(self.protocol)
-        if DEFINITIONS[self.protocol].duration_s is not None:
-            return PlannedTest(self.protocol, lap_m=length_m)
-        return PlannedTest(self.protocol, course_m=length_m)
+        return with_course(PlannedTest(self.protocol), self._courses_m.get(self.protocol))
 
     @property
     def is_running(self) -> bool:
@@ -109,8 +104,7 @@ class TimedControl(QObject):
             if site.segment is Segment.THIGH and name in visit.rests
         }
         feet = frozenset(site.side for site in worn.values() if site.segment is Segment.FOOT and site.side is not None)
-        self._live = LiveTest(planned.protocol, upright, visit.prosthetic_sides, feet, began_s)
-        self._live.planned = planned
+        self._live = LiveTest(planned, upright, visit.prosthetic_sides, feet, began_s)
         self.watch(self._estimator)
 
     @Slot(object)

@@ -16,7 +16,7 @@ from app.wizard.walking.walk_rows import ongoing_walk
 from app.wizard.walking.walk_start import WalkStart
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import capitalised, tr, within_sentence
-from core.timed.protocols import DEFINITIONS
+from core.timed.protocols import DEFINITIONS, course_of
 
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing
@@ -114,7 +114,7 @@ class WalkingBar:
         elif definition.length_m is not None:
             verb = tr("End at the tape")
             stated = tr("Press Space at the end of the tape. The distance then counts as {length:.2f} m.")
-            note = stated.format(length=definition.length_m)
+            note = stated.format(length=course_of(readout.planned))
         else:
             verb, note = (
                 tr("End the test"),

@@ -34,7 +34,7 @@ class CourseReceived:
         upright = {site: rest.acc_m_s2 for site, rest in rests.items() if site.segment is Segment.THIGH}
         self.now_s = min(float(block.time_s[0]) for block in course.imu.values())
         self.end_s = max(float(block.time_s[-1]) for block in course.imu.values())
-        self.test = LiveTest(protocol, upright, frozenset(), sides, self.now_s)
+        self.test = LiveTest(PlannedTest(protocol), upright, frozenset(), sides, self.now_s)
 
     def hear_until(self, time_s: float) -> None:
         while self.now_s < min(time_s, self.end_s):

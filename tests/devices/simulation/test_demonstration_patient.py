@@ -54,8 +54,10 @@ class Watched(DemonstrationPatient):
 
 
 def _whole(name: str, parts: list[ImuBlock]) -> ImuBlock:
-    columns = ("time_s", "gyr_rad_s", "acc_m_s2")
-    return ImuBlock(name, *(np.concatenate([getattr(part, column) for part in parts]) for column in columns))
+    time_s, gyr_rad_s, acc_m_s2 = (
+        np.concatenate([getattr(part, column) for part in parts]) for column in ("time_s", "gyr_rad_s", "acc_m_s2")
+    )
+    return ImuBlock(name, time_s, gyr_rad_s, acc_m_s2)
 
 
 def tilt_deg(thigh: ImuBlock, upright: FloatArray) -> FloatArray:

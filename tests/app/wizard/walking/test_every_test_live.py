@@ -9,6 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.resuming import rests_of
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.timed_result import TimedResultView
@@ -51,6 +52,8 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     patient_time.wait(qtbot, 4.0)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.recordings.stop()
+    qtbot.waitUntil(lambda: bool(rests_of(visit.recordings.every)), timeout=PATIENCE_MS)
+    visit.rests = rests_of(visit.recordings.every)
     step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 660)
