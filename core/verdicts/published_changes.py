@@ -81,7 +81,7 @@ PUBLISHED: tuple[PublishedChange, ...] = (
         0.21,
         (
             "Hosoi et al. 2023, doi 10.3389/fneur.2023.1219505 (below 0.4, to 0.8 and above 0.8 m/s)",
-            "Lewek & Sykes 2019, J Neurol Phys Ther 43:122 (the same groups: 0.10, 0.15, 0.18 m/s; 95 %)",
+            "Lewek & Sykes 2019, J Neurol Phys Ther (the same groups: 0.10, 0.15, 0.18 m/s; 95 %)",
         ),
     ),
     PublishedChange(
@@ -96,9 +96,7 @@ PUBLISHED: tuple[PublishedChange, ...] = (
     PublishedChange(
         _SPEED, _ARTHRITIS, _MCID, 0.07, 0.12, ("Gilbert et al. 2021, doi 10.1002/acr.24159 (20 m; knee)",)
     ),
-    PublishedChange(
-        _SPEED, _PARKINSON, _MDC, 0.09, 0.18, (_STEFFEN, "Combs et al. 2014, NeuroRehabilitation 34:327 (95 %)")
-    ),
+    PublishedChange(_SPEED, _PARKINSON, _MDC, 0.09, 0.18, (_STEFFEN, "Combs et al. 2014, NeuroRehabilitation (95 %)")),
     PublishedChange(
         _SPEED,
         _PARKINSON,
