@@ -78,7 +78,7 @@ def _stances(way: BodyWay, turn_s: float) -> tuple[FloatArray, FloatArray]:
     for foot in way.feet.values():
         if len(foot.heading_rad):
             time_s, heading = _stances_of(foot, stride_s)
-            straight = (time_s < turn_s) & (np.arange(len(time_s)) > 0)
+            straight = (time_s < turn_s) & (time_s > time_s[0])
             heading = heading - float(np.median(heading[straight]) if np.any(straight) else heading[0])
             times.append(time_s)
             headings.append(heading)
@@ -90,12 +90,14 @@ def _stances(way: BodyWay, turn_s: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _stances_of(foot: FootSteps, stride_s: float) -> tuple[FloatArray, FloatArray]:
-    off_s = np.append(foot.toe_off_s[1:], np.inf)
-    is_long = off_s - foot.contact_s > LONG_STANCE_SHARE * stride_s
+    """The middle of each stance; both ends of a long one, in which the body may turn on."""
     over_s = OVER_FOOT_SHARE * stride_s
-    middle_s = np.where(is_long, foot.contact_s + over_s, 0.5 * (foot.contact_s + np.minimum(off_s, 1e9)))
-    first_s = foot.toe_off_s[0] - over_s
-    return np.concatenate([[first_s], middle_s]), np.concatenate([foot.heading_rad[:1, 0], foot.heading_rad[:, 1]])
+    from_s = np.concatenate([foot.turned_s[:1, 0] - 2.0 * over_s, foot.turned_s[:, 1]])
+    to_s = np.append(foot.turned_s[:, 0], foot.turned_s[-1:, 1] + 2.0 * over_s)
+    is_long = to_s - from_s > LONG_STANCE_SHARE * stride_s
+    first_s = np.where(is_long, from_s + over_s, 0.5 * (from_s + to_s))
+    heading = np.append(foot.heading_rad[:1, 0], foot.heading_rad[:, 1])
+    return np.append(first_s, to_s[is_long] - over_s), np.append(heading, heading[is_long])
 
 
 def _edges(time_s: FloatArray, heading: FloatArray, turn: Turn) -> tuple[float, float]:

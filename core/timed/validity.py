@@ -131,7 +131,9 @@ class Laps:
 
 
 def laps_of(way: BodyWay, turns: tuple[Turn, ...], start_s: float, end_s: float) -> Laps:
-    """Give the laps between turns about. What a silence touches is NaN; with both feet silent nothing is counted."""
+    """Give the laps between turns about. What a silence touches is NaN, and all of it once no foot was received."""
+    if _is_unseen(way, start_s, end_s):
+        return Laps(0, math.nan, math.nan)
     abouts = [turn for turn in turns if turn.is_about]
     ends_s = [start_s, *(turn.middle_s for turn in abouts), end_s]
     lengths, rest_m = [], math.nan
@@ -146,6 +148,18 @@ def laps_of(way: BodyWay, turns: tuple[Turn, ...], start_s: float, end_s: float)
         else:
             lengths.append(length_m)
     return Laps(len(abouts), float(np.median(lengths)) if lengths else math.nan, rest_m)
+
+
+def _is_unseen(way: BodyWay, start_s: float, end_s: float) -> bool:
+    """Whether there was a moment in which no foot was received, so that a turn may be missing."""
+    silences = way.silences_in(start_s, end_s)
+    of_sites = [[one for one in silences if one.site is site] for site in {one.site for one in silences}]
+    if len(of_sites) < len(way.feet):
+        return not way.feet
+    return any(
+        all(any(one.start_s < other.end_s and one.end_s > other.start_s for other in of_site) for of_site in of_sites)
+        for one in silences
+    )
 
 
 def _between(place: FloatArray, *, is_round_first: bool, is_round_last: bool) -> float:

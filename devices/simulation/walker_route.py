@@ -12,6 +12,7 @@ from devices.simulation.walker_plan import Bend
 GRID = 400  # points along a turn's shape
 LEAST_STRAIGHT_M = 0.3
 TURNING_SHARE = 0.85  # of a usual step's length: no step of a turn is longer
+STEP_TURN_RAD = np.deg2rad(55.0)  # no step turns the body farther
 SLANTS_RAD = (-0.4, 0.7)
 SIDEWAYS_RAD = np.deg2rad(35.0)  # of turn, and no more, before the patient sits down sideways
 SHORT_M = 0.28  # a step before a turn, of a patient who hesitates
@@ -90,7 +91,8 @@ def turn(
     pace: Pace, length_m: float, turn_rad: float, rng: np.random.Generator, *, least_s: float = 2.5, early: float = 0.0
 ) -> Piece:
     """Turn on a way of exactly so long, in at least so much time."""
-    count = int(np.ceil(max(least_s / pace.step_s, length_m / (TURNING_SHARE * pace.step_m))))
+    fewest = (least_s / pace.step_s, length_m / (TURNING_SHARE * pace.step_m), abs(turn_rad) / STEP_TURN_RAD)
+    count = int(np.ceil(max(fewest)))
     lengths = rng.normal(1.0, 0.05, count)
     lengths *= length_m / lengths.sum()
     times = pace.step_s * rng.normal(1.0, 0.03, count)
