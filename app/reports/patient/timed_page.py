@@ -4,11 +4,13 @@ from app.exports.timed_csv import timed_walks
 from app.reports.blocks import Block, Cell, Column, Row, figures, heading, note, paragraph, table
 from app.reports.patient.trend_page import charts_of_tests
 from app.summary.facts import Facts
-from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, signed
+from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed
 from app.summary.plain_text import CONDITION_LENGTH, isolated, plain, typed
 from app.summary.request import ReportRequest
 from app.summary.timed_tables import Section, sections_of
+from app.summary.timed_words import name_of_population, populations_of, published_rows, span_in_words
 from app.summary.visits import condition_in_words
+from app.wording.measures import short_unit
 from app.wording.recordings import name_in_words
 from app.wording.timed_tests import (
     error_words,
@@ -25,6 +27,7 @@ from core.timed.found import TimedTest
 from core.timed.measures import COLUMNS
 from core.timed.protocols import DEFINITIONS, TimedProtocol
 from core.verdicts.attempts import error_between_visits
+from core.verdicts.published_changes import Population
 
 MOST_TESTS = 12  # of one page
 MOST_BESIDE = 4  # attempts at one test
@@ -72,7 +75,27 @@ def _course(request: ReportRequest, facts: Facts) -> list[Block]:
             )
         )
     drawn = figures(list(charts.values()), columns=2)
-    return [heading(tr("Progress by visit"), 2), note(" ".join(wording)), drawn]
+    published = _published(list(charts), populations_of(facts.visit.session.patient))
+    return [heading(tr("Progress by visit"), 2), note(" ".join(wording)), drawn, *published]
+
+
+def _published(protocols: list[TimedProtocol], populations: tuple[Population, ...]) -> list[Block]:
+    """What others published about changes of these tests, with their sources."""
+    rows: list[Row] = []
+    sources: dict[str, None] = {}
+    for protocol in protocols:
+        for population, *found in published_rows(protocol, populations):
+            unit = short_unit(COLUMNS[protocol]).strip()
+            rows.append([name_of_test(protocol), name_of_population(population), unit, *map(span_in_words, found)])
+            sources |= dict.fromkeys(source for one in found if one is not None for source in one.sources)
+    if not rows:
+        return []
+    columns = [Column(tr("Test"), is_number=False), Column(tr("Patients"), "1fr", is_number=False)]
+    columns += [Column(tr("Unit"), is_number=False), Column(tr("MDC")), Column(tr("MCID"))]
+    explained = tr("MDC: least change beyond measurement error. MCID: least change that matters to patients. Sources:")
+    daggers = [dagger_note()] if any(DAGGER in cell for row in rows for cell in row if isinstance(cell, str)) else []
+    cited = note(" ".join([f"{explained} {'; '.join(sources)}.", *daggers]))
+    return [heading(tr("Published least changes"), 2), table(columns, rows, is_dense=True), cited]
 
 
 def _name(request: ReportRequest, walk: RecordingAnalysis) -> str:

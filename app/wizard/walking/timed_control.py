@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject, Signal, Slot
 from app.storage.journal.payloads import key_text
 from app.summary.course_lanes import LaneKind, lanes
 from app.summary.numbers_in_words import fixed
+from app.summary.timed_words import populations_of, published_sentence
 from app.system import sounds
 from app.system.sounds import Sound
 from app.wizard.evaluation import failure_in_words
@@ -186,6 +187,7 @@ class TimedControl(QObject):
             same,
             [str(names[one.name]) for one in same],
             *self._course(every[-1].protocol),
+            published=published_sentence(every[-1].protocol, populations_of(self._visit.patient.details)),
             failure=failure_in_words() if self._visit.evaluation.has_failed else None,
         )
 

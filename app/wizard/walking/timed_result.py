@@ -64,6 +64,7 @@ class TimedResult:
     """The latest test, and every attempt at the same one in this session; `called`: each walk's name on the screen.
 
     `lane`: what the test is made for over the `visits` that have it, this one the last; None where it is the first.
+    `published`: what others published about changes of it.
     `failure`: that the analysis ended early and what is left, so that nobody works on what the latest one lacks.
     """
 
@@ -71,6 +72,7 @@ class TimedResult:
     called: Sequence[str]
     visits: Sequence[CourseVisit] = ()
     lane: CourseLane | None = None
+    published: str = ""
     failure: tuple[str, str] | None = None
 
     @property
@@ -95,6 +97,7 @@ class TimedResultView(QWidget):
         self.attempts = CellTable(tr("Attempts"))
         self.parts = CellTable(tr("Test sections"))
         self.course = CourseCard()
+        self.published = Text(size=12, tone="ink2", wraps=True)
         self.errors = Text(size=12, tone="ink2", wraps=True)
         self._build()
         self.entry.entered.connect(self.course_entered)
@@ -112,7 +115,10 @@ class TimedResultView(QWidget):
         self._parts_card.setVisible(sections is not None)
         if found is not None and sections is not None:
             self.parts.show_rows(*_section_rows(sections, found.time_s))
-        self.errors.setText(" ".join(error_words(one) for one in found.definition.errors) if found else "")
+        errors = [error_words(one) for one in found.definition.errors] if found else []
+        self.errors.setText(" ".join(errors))
+        self.published.setText(state.published)
+        self.published.setVisible(bool(state.published) and state.latest.counts)
         self._arrange()
 
     def _show_words(self, state: TimedResult) -> None:
@@ -163,7 +169,7 @@ class TimedResultView(QWidget):
         cards = ((self._attempts_card, 1), (self._parts_card, 1))
         self._tables = lay_out(QBoxLayout(QBoxLayout.Direction.TopToBottom), *cards, spacing=BETWEEN)
         inside = QWidget()
-        parts = (self.not_valid, head, self.entry, self._tables, self.course, self.errors, 1)
+        parts = (self.not_valid, head, self.entry, self._tables, self.course, self.published, self.errors, 1)
         lay_out(QVBoxLayout(inside), *parts, margins=0, spacing=BETWEEN)
         lay_out(QVBoxLayout(self), scrolled(inside, is_upright=False), margins=0)
 
