@@ -48,10 +48,9 @@ def course_label(protocol: TimedProtocol) -> str:
 def instruction(planned: PlannedTest) -> str:
     """How a test is done, for who leads it."""
     course_m = course_of(planned) or 0.0
-    straight = tr("A straight {whole} m: 2 m run-in, {course} m timed, 2 m run-out. Stand still for 1 s, then walk.")
     return {
-        TimedProtocol.TEN_METRES: straight.format(
-            all=short_figure(course_m + 4.0, 2), course=short_figure(course_m, 2)
+        TimedProtocol.TEN_METRES: tr(
+            "A straight {whole} m: 2 m run-in, {course} m timed, 2 m run-out. Stand still for 1 s, then walk."
         ),
         TimedProtocol.TWO_MINUTES: tr("Stand still for 1 s, then walk to and fro for 2 minutes."),
         TimedProtocol.SIX_MINUTES: tr("Stand still for 1 s, then walk to and fro for 6 minutes."),

@@ -93,7 +93,8 @@ def _published(protocols: list[TimedProtocol], populations: tuple[Population, ..
     columns = [Column(tr("Test"), is_number=False), Column(tr("Patients"), "1fr", is_number=False)]
     columns += [Column(tr("Unit"), is_number=False), Column(tr("MDC")), Column(tr("MCID"))]
     explained = tr("MDC: least change beyond measurement error. MCID: least change that matters to patients. Sources:")
-    daggers = [dagger_note()] if any(DAGGER in cell for row in rows for cell in row if isinstance(cell, str)) else []
+    unread = tr("{dagger}: fewer than two sources could be read.").format(dagger=DAGGER)
+    daggers = [unread] if any(DAGGER in cell for row in rows for cell in row if isinstance(cell, str)) else []
     cited = note(" ".join([f"{explained} {'; '.join(sources)}.", *daggers]))
     return [heading(tr("Published least changes"), 2), table(columns, rows, is_dense=True), cited]
 
