@@ -226,6 +226,8 @@ def result_sentence(test: TimedTest) -> str:
         stated = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
     elif test.protocol is TimedProtocol.TEN_METRES and math.isfinite(test.speed_m_s):
         stated = [f"{figure_text(test.speed_m_s, '.2f')} m/s", f"{figure_text(test.time_s, '.1f')} s"]
+        if math.isfinite(test.course_m) and test.course_m != test.definition.length_m:
+            stated.append(f"{short_figure(test.course_m, 2)} m")
     elif test.definition.duration_s is None:
         stated = [f"{figure_text(test.time_s, '.1f')} s"]
     if not stated:

@@ -3,6 +3,8 @@
 from app.exports.timed_csv import timed_walks
 from app.reports.blocks import Block, Cell, Column, Row, figures, heading, note, paragraph, table
 from app.reports.patient.trend_page import charts_of_tests
+from app.summary.course_lanes import LaneKind, lanes
+from app.summary.course_words import changes_since_in_words
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed
 from app.summary.plain_text import CONDITION_LENGTH, isolated, plain, typed
@@ -45,9 +47,9 @@ def timed_page(request: ReportRequest, facts: Facts) -> list[Block]:
     for walk, test in tests:
         first = [result_sentence(test)] if test.is_valid else [not_valid_sentence(test), not_compared_sentence(test)]
         blocks.append(paragraph(f"{_name(request, walk)}: {' '.join([*first, *sentences_of(test)])}"))
+    blocks += _course(request, facts)
     for protocol in protocols:
         blocks += _parts([(_name(request, walk), test) for walk, test in tests if test.protocol is protocol])
-    blocks += _course(request, facts)
     known = [_known(protocol) for protocol in protocols]
     errors = {error for _, test in tests for error in test.definition.errors}
     if any(not error.is_verified for error in errors):
@@ -76,7 +78,16 @@ def _course(request: ReportRequest, facts: Facts) -> list[Block]:
         )
     drawn = figures(list(charts.values()), columns=2)
     published = _published(list(charts), populations_of(facts.visit.session.patient))
-    return [heading(tr("Progress by visit"), 2), note(" ".join(wording)), drawn, *published]
+    changed = [paragraph(words) for protocol in charts if (words := _change(request, condition, protocol))]
+    return [heading(tr("Progress by visit"), 2), *changed, note(" ".join(wording)), drawn, *published]
+
+
+def _change(request: ReportRequest, condition: str, protocol: TimedProtocol) -> str:
+    """By how much a test's figure differs from the last visit and the first one, and whether beyond error."""
+    goals = request.visit.session.patient.goals
+    (lane,) = lanes(request.course, condition, goals, (LaneKind(COLUMNS[protocol]),))
+    changed = changes_since_in_words(lane, request.course)
+    return f"{name_of_test(protocol)}: {changed}" if changed else ""
 
 
 def _published(protocols: list[TimedProtocol], populations: tuple[Population, ...]) -> list[Block]:
@@ -147,14 +158,16 @@ def _parts(tests: list[tuple[str, TimedTest]]) -> list[Block]:
     longest = max((found.rows for _, _, found in shown), key=len)
     rows: list[Row] = []
     for k, one in enumerate(longest):
-        of_attempts = [found.rows[k] if k < len(found.rows) else None for _, _, found in shown]
-        rows.append([one.name, *(_duration(part) for part in of_attempts)])
+        of_attempts = [(test, found.rows[k] if k < len(found.rows) else None) for _, test, found in shown]
+        rows.append([one.name, *(_duration(part, is_grey=not test.is_valid) for test, part in of_attempts)])
     return [title, table(columns, rows, is_dense=True)]
 
 
-def _duration(part: Section | None) -> Cell:
+def _duration(part: Section | None, *, is_grey: bool) -> Cell:
     """How long a part took, the longest of its kind in bold."""
-    return Cell(NOTHING if part is None else part.texts[-1], is_bold=part is not None and part.is_marked)
+    if part is None:
+        return Cell(NOTHING, is_grey=is_grey)
+    return Cell(part.texts[-1], is_bold=part.is_marked, is_grey=is_grey)
 
 
 def _known(protocol: TimedProtocol) -> str:

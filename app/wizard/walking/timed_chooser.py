@@ -13,7 +13,7 @@ from app.widgets.key_cap import KeyCap
 from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
 from app.wording.timed_tests import course_label, name_of_test
-from app.wording.translation import tr
+from app.wording.translation import tr, within_sentence
 from core.timed.protocols import PlannedTest, TimedProtocol, course_of
 
 LEAST, MOST = 120, 340  # px of the box
@@ -85,7 +85,7 @@ class CourseField(QWidget):
         label = "" if planned is None else course_label(planned.protocol)
         self.setVisible(bool(label))
         self._caption.setText(label)
-        self.field.set_label(label)
+        self.field.set_label(tr("Next test, {length}").format(length=within_sentence(label)))  # not the one before
         if planned is not None and not self.field.line_edit.hasFocus():
             self.field.set_value(course_of(planned))
 
