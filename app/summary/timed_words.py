@@ -65,5 +65,11 @@ def published_sentence(protocol: TimedProtocol, populations: Sequence[Population
         stated.append(f"{name_of_population(population)}: {figures}")
     if not stated:
         return ""
-    unit = short_unit(COLUMNS[protocol]).strip()
-    return tr("Published least changes, {unit}. {figures}.").format(unit=unit, figures=capitalised("; ".join(stated)))
+    unit, figures = short_unit(COLUMNS[protocol]).strip(), capitalised("; ".join(stated))
+    sentence = tr("Published least changes, {unit}. {figures}.").format(unit=unit, figures=figures)
+    return f"{sentence} {unread_note()}" if DAGGER in figures else sentence
+
+
+def unread_note() -> str:
+    """What the dagger means beside a published figure."""
+    return tr("{dagger}: fewer than two sources could be read.").format(dagger=DAGGER)
