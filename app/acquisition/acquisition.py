@@ -22,8 +22,10 @@ from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.alignment import NetChange
 from core.samples import ImuBlock
 from core.session import RecordingKind
+from core.timed.protocols import PlannedTest
 from devices.clocks.host_clock import host_time_ns
 from devices.live import LiveSource, SourceRefusedError
+from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.prosthesis_user import ProsthesisUser
 
 if TYPE_CHECKING:
@@ -175,6 +177,14 @@ class Acquisition:
         """Ask simulated patients for this movement; give its duration in s, None where no source knows it."""
         reported = [reader.source.ask(kind) for reader in self._readers]
         return max((length_s for length_s in reported if length_s is not None), default=None)
+
+    def ask_test(self, planned: PlannedTest) -> None:
+        """Ask the demonstration's patient for this timed test, what else is played for a walk."""
+        for reader in self._readers:
+            if isinstance(reader.source, DemonstrationPatient):
+                reader.source.perform(planned)
+            else:
+                reader.source.ask(RecordingKind.WALKING)
 
     def set_up(self, changes: Sequence[NetChange]) -> None:
         """Report to the simulated user of a prosthesis what was changed at it; at a real one somebody has turned it."""

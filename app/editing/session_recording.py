@@ -60,5 +60,8 @@ def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
 
 def _with_its_keys(reported: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
     """The test as it was entered; a recovered recording's keys are in its journal alone."""
-    has_keys = reported is not None and (reported.start_key_s, reported.end_key_s) != (None, None)
-    return reported if reported is None or read is None or has_keys or read.protocol is not reported.protocol else read
+    if reported is None or read is None or read.protocol is not reported.protocol:
+        return reported
+    if (reported.start_key_s, reported.end_key_s) != (None, None):
+        return reported
+    return replace(reported, start_key_s=read.start_key_s, end_key_s=read.end_key_s)

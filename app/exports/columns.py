@@ -323,13 +323,14 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "condition": _word("what was worn or set"),
         "test": _word("which test the walk is, in the words of session.toml"),
         "row": _word(
-            "what the row is of: test, third, lap, turn, pause, rise, stair (a stride) or silence of a sensor"
+            "what the row is of: test, third, lap, turn, pause, rise, stair (a stride), silence of a sensor, part (of "
+            "an up and go) or sitting; rise_mean, rise_slowest, sitting_mean and sitting_slowest are of several"
         ),
         "number": _word("of the rows of this kind, from 1"),
         "start_s": ColumnMeaning("of a test on the recording's clock, of its parts from the start of the test"),
         "end_s": ColumnMeaning("likewise"),
         "time_s": ColumnMeaning("from start to end"),
-        "distance_m": ColumnMeaning("what counts: where a key ended a walk between tapes the tapes', else the feet's"),
+        "distance_m": ColumnMeaning("what counts; distance_source states where it is from"),
         "sensor_distance_m": ColumnMeaning("by the feet's sensors, turns as arcs"),
         "speed_m_s": ColumnMeaning("distance by time, pauses included"),
         "cadence_steps_min": ColumnMeaning("of the median stride, pauses excluded", unit="steps/min"),
@@ -340,6 +341,18 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "ended_by": _word("key or motion"),
         "sensor": _word("the one that was silent"),
         "missing": _word("why cells of the test are empty"),
+        "part": _word("of an up and go: rise, walk_out, turn, walk_back, turn_to_sit or sit"),
+        "validity": _word("valid, not_valid, or not_checked, where nothing shows the course"),
+        "not_valid": _word("in what it was not the test that it is called; its figure is in no mean of attempts"),
+        "course_m": ColumnMeaning(
+            "from the chair to the cone, between the tapes, or of a lap from turn to turn, as entered or as the test "
+            "has it"
+        ),
+        "course_found_m": ColumnMeaning("the same by the feet"),
+        "distance_source": _word(
+            "feet; tape (between two marks); typed (laps and the rest, as entered); found_laps (laps of the length "
+            "entered, as many as the turns show)"
+        ),
     },
     "alignments.csv": {
         "walk": _word("the recording before which it was changed"),

@@ -1,7 +1,8 @@
 """What came of each timed test of a session, as tables for other programs: `timed_test.csv`, and a part of the summary.
 
-One row for the test itself, then one for every third, lap, turn, pause, rise and silence of a sensor. Times of parts
-count from the start of the test. What was not measured is an empty cell, and the row of the test states why.
+One row for the test itself, then one for every third, lap, turn, pause, rise, stair and silence of a sensor, part of an
+up and go and sitting; of several rises and sittings the mean and the slowest. Times of parts count from the start of
+the test. What was not measured is an empty cell, and the row of the test states why, and whether it is valid.
 """
 
 import math
@@ -20,6 +21,7 @@ HEADER = (
     *("recording", "condition", "test", "row", "number", "start_s", "end_s", "time_s"),
     *("distance_m", "sensor_distance_m", "speed_m_s", "cadence_steps_min", "turn_deg", "side", "climb_m"),
     *("started_by", "ended_by", "sensor", "missing"),
+    *("part", "validity", "not_valid", "course_m", "course_found_m", "distance_source"),
 )
 
 
@@ -53,6 +55,11 @@ def _rows(test: TimedTest) -> Iterator[dict[str, str]]:
         "started_by": "key" if test.is_start_by_key else "motion",
         "ended_by": "key" if test.is_end_by_key else "motion",
         "missing": " ".join(str(one) for one in test.missing),
+        "validity": str(test.validity),
+        "not_valid": " ".join(str(one) for one in test.not_valid),
+        "course_m": figure(test.course_m, 3),
+        "course_found_m": figure(test.course_found_m, 3),
+        "distance_source": str(test.distance_source) if math.isfinite(test.distance_m) else "",
     }
     parts: dict[str, list[tuple[float, float, dict[str, str]]]] = {
         "third": [(one.start_s, one.end_s, _walked(one)) for one in test.thirds],
@@ -66,10 +73,26 @@ def _rows(test: TimedTest) -> Iterator[dict[str, str]]:
             (one.start_s, one.end_s, {"side": str(one.side), "climb_m": figure(one.climb_m, 3)}) for one in test.stairs
         ],
         "silence": [(one.start_s, one.end_s, {"sensor": str(one.site)}) for one in test.silences],
+        "part": [(one.start_s, one.end_s, {"part": str(one.part)}) for one in test.parts],
+        "sitting": [(one.left_upright_s, one.seated_s, {}) for one in test.sittings],
     }
     for word, rows in parts.items():
         for number, (start_s, end_s, more) in enumerate(rows, 1):
             yield {"row": word, "number": str(number), **_span(start_s, end_s, test.start_s), **more}
+    if test.definition.rises > 1:
+        for word in ("rise", "sitting"):
+            yield from _mean_and_slowest(word, parts[word], test.start_s)
+
+
+def _mean_and_slowest(
+    word: str, rows: list[tuple[float, float, dict[str, str]]], from_s: float
+) -> Iterator[dict[str, str]]:
+    if len(rows) < 2:
+        return
+    times_s = [end_s - start_s for start_s, end_s, _ in rows]
+    slowest = int(np.argmax(times_s))
+    yield {"row": f"{word}_mean", "number": "1", "time_s": figure(float(np.mean(times_s)), 3)}
+    yield {"row": f"{word}_slowest", "number": "1", **_span(*rows[slowest][:2], from_s)}
 
 
 def _walked(one: TimedPart | TimedTest) -> dict[str, str]:
@@ -125,6 +148,31 @@ def timed_summary(test: TimedTest) -> dict[str, Any]:
             }
             for one in test.definition.errors
         ],
+        "validity": str(test.validity),
+        "not_valid": [str(one) for one in test.not_valid],
+        "course_m": _known(test.course_m, 3),
+        "course_found_m": _known(test.course_found_m, 3),
+        "distance_source": str(test.distance_source) if math.isfinite(test.distance_m) else None,
+        "parts": [
+            {
+                "part": str(one.part),
+                "start_s": _known(one.start_s, 3),
+                "end_s": _known(one.end_s, 3),
+                "time_s": _known(one.time_s, 3),
+            }
+            for one in test.parts
+        ],
+        "rise_s": _times([one.time_s for one in test.rises]),
+        "sitting_s": _times([one.time_s for one in test.sittings]),
+    }
+
+
+def _times(times_s: list[float]) -> dict[str, Any]:
+    """How long each took, the mean and the slowest; null without any."""
+    return {
+        "each": [_known(one, 3) for one in times_s],
+        "mean": _known(float(np.mean(times_s)) if times_s else math.nan, 3),
+        "slowest": _known(max(times_s, default=math.nan), 3),
     }
 
 

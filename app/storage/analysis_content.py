@@ -33,11 +33,24 @@ from core.results import (
 )
 from core.session import RecordingKind
 from core.signal.reception import Reception
-from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
+from core.timed.found import (
+    DistanceSource,
+    NotMeasured,
+    NotValid,
+    Part,
+    Rise,
+    Silence,
+    Sitting,
+    StairStride,
+    TimedPart,
+    TimedTest,
+    Turn,
+    UpAndGoPart,
+)
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/6"
+FORMAT = "gaitwright-kept-analysis/7"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {
@@ -47,13 +60,14 @@ VALUES: Mapping[str, type] = {
         *(Reception, RecordingAnalysis, SideGait, Strides),
         *(HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn),
         *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),
-        *(Rise, Silence, StairStride, TimedPart, TimedTest, Turn),
+        *(Rise, Silence, Sitting, StairStride, TimedPart, TimedTest, Turn, UpAndGoPart),
     )
 }
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
     for kind in (
-        *(AxisSource, ClockStatus, ClockTie, Joint, Method, NotMeasured, Reason, RecordingKind),
+        *(AxisSource, ClockStatus, ClockTie, DistanceSource, Joint, Method, NotMeasured, NotValid, Part),
+        *(Reason, RecordingKind),
         *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
     )
 }

@@ -16,7 +16,7 @@ from core.goals import OF_LEGS
 from core.parameters import CADENCE, SPEED
 from core.results import Analysis, RecordingAnalysis
 from core.session import Recording
-from core.timed.measures import COLUMNS, PROTOCOLS, MeanOfAttempts, figure_of, mean_of_attempts, rests_on_feet
+from core.timed.measures import COLUMNS, PROTOCOLS, MeanOfAttempts, counted_figure, mean_of_attempts, rests_on_feet
 from core.verdicts.attempts import compare_attempts, error_between_visits
 from core.verdicts.measurement_error import Difference, Judgement, compare, whisker
 from core.verdicts.model import Assessment, GateReason, Verdict, together, worst
@@ -164,7 +164,7 @@ def timed_test_of(column: str, walks: Sequence[RecordingAnalysis]) -> CourseTest
 
 
 def _test(column: str, walks: Sequence[RecordingAnalysis]) -> CourseTest:
-    """A test over its attempts; what rests on the feet's way is read as that way is."""
+    """A test over its valid attempts; what rests on the feet's way is read as that way is."""
     values, verdicts = [], []
     for walk in walks:
         assert walk.timed is not None  # only tests are given
@@ -172,7 +172,7 @@ def _test(column: str, walks: Sequence[RecordingAnalysis]) -> CourseTest:
         if rests_on_feet(walk.timed):
             verdict = together(walk.verdicts.leg(side).distance for side in walk.gait).verdict
         is_reported = Assessment(verdict).is_reported
-        values.append(figure_of(walk.timed) if is_reported else math.nan)
+        values.append(counted_figure(walk.timed) if is_reported else math.nan)
         verdicts.append(verdict)
     found = mean_of_attempts(values)
     reported = [one for one, value in zip(verdicts, values, strict=True) if math.isfinite(value)]

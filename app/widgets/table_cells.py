@@ -22,7 +22,7 @@ LINE = 18  # from one line of a text to the next
 ONE_LINE = 28
 STRIP_WIDTH, STRIP_HEIGHT = 120, 18
 DOT = 11
-INTERVAL_WIDTH, CIRCLE = 146, 11
+INTERVAL_WIDTH, CIRCLE, SPAN_WIDTH = 146, 11, 96
 
 
 class TableCell(ABC):
@@ -280,6 +280,28 @@ class IntervalStrip(TableCell):
     def _x(self, value: float, room: QRectF, theme: Theme) -> float:
         reach = room.width() / 2 - theme.px(5)
         return room.center().x() + reach * min(max(value / self.scale, -1.0), 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class SpanStrip(TableCell):
+    """From when to when something lasted, on a line from 0 to `whole`, all in one unit."""
+
+    start: float
+    end: float
+    whole: float
+    is_marked: bool = False
+
+    def width(self, theme: Theme) -> int:
+        return theme.px(SPAN_WIDTH)
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        c, px, middle = theme.colours, theme.px, room.center().y()
+        painter.fillRect(QRectF(room.left(), middle - px(2), room.width(), px(4)), QColor(c.track))
+        if not (self.whole > 0.0 and math.isfinite(self.end - self.start)):
+            return
+        left, right = (room.left() + room.width() * value / self.whole for value in (self.start, self.end))
+        box = QRectF(left, middle - px(6), max(right - left, px(2)), px(12))
+        painter.fillRect(box, QColor(c.ink if self.is_marked else c.ink2))
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,6 +60,7 @@ class KeyAction(Enum):
     PATIENT_SCREEN = auto()  # F8
     FULL_SCREEN = auto()  # F11
     NEXT_TEST = auto()  # T
+    COURSE = auto()  # C: the length of the test's course
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +81,7 @@ _PLAIN: dict[int, KeyAction] = {
     _Key.Key_R: KeyAction.RIGHT_LEG,
     _Key.Key_I: KeyAction.IDENTIFY,
     _Key.Key_T: KeyAction.NEXT_TEST,
+    _Key.Key_C: KeyAction.COURSE,
 }
 # what presenters' clickers send: forward and back, first and last, start, black screen, volume, media
 _OF_CLICKERS = frozenset(

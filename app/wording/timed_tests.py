@@ -9,11 +9,16 @@ import math
 
 from app.wording.body import name_of
 from app.wording.numbers import clock
-from app.wording.translation import figure_text, joined, later, tr, tr_n
-from core.timed.found import NotMeasured, TimedTest
-from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
+from app.wording.translation import figure_text, joined, later, short_figure, tr, tr_n
+from core.timed.found import DistanceSource, NotMeasured, NotValid, Part, TimedTest
+from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol, course_of
 
+RUN_IN_AND_OUT_M = 4.0
 ALLOWED_PERCENT = 3.0  # more than that off the tape, the sensors' distance is not to be read
+GRAVEST_FIRST = (
+    *(NotValid.NO_RISE, NotValid.NO_TURN, NotValid.MORE_TURNS, NotValid.COURSE_SHORTER, NotValid.COURSE_LONGER),
+    *(NotValid.NO_TURN_TO_SIT, NotValid.ELSEWHERE, NotValid.LAP_DIFFERS, NotValid.DISTANCE_DIFFERS),
+)
 DAGGER = "\N{DAGGER}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 
@@ -30,6 +35,31 @@ def name_of_test(protocol: TimedProtocol) -> str:
     }[protocol]
 
 
+def course_label(protocol: TimedProtocol) -> str:
+    """What the length of a test's course is called; empty where it has none."""
+    return {
+        TimedProtocol.TEN_METRES: tr("Between the tapes"),
+        TimedProtocol.TWO_MINUTES: tr("Lap"),
+        TimedProtocol.SIX_MINUTES: tr("Lap"),
+        TimedProtocol.UP_AND_GO: tr("Chair to cone"),
+    }.get(protocol, "")
+
+
+def instruction(planned: PlannedTest) -> str:
+    """How a test is done, for who leads it."""
+    course_m = course_of(planned) or 0.0
+    return {
+        TimedProtocol.TEN_METRES: tr(
+            "A straight {whole} m: 2 m run-in, {course} m timed, 2 m run-out. Stand still for 1 s, then walk."
+        ),
+        TimedProtocol.TWO_MINUTES: tr("Stand still for 1 s, then walk to and fro for 2 minutes."),
+        TimedProtocol.SIX_MINUTES: tr("Stand still for 1 s, then walk to and fro for 6 minutes."),
+        TimedProtocol.UP_AND_GO: tr("Sit still. Rise, walk round the cone, walk back and sit down."),
+        TimedProtocol.SIT_TO_STAND: tr("Sit still. Rise and sit down, until standing for the fifth time."),
+        TimedProtocol.STAIRS: tr("Stand still for 1 s before the stairs, then climb up and down."),
+    }[planned.protocol].format(whole=short_figure(course_m + RUN_IN_AND_OUT_M, 2), course=short_figure(course_m, 2))
+
+
 def planned_words(planned: PlannedTest | None) -> str:
     """Which test a walk is, with the instants of its keys: "10-metre walk, key at the start: 3.2 s"."""
     if planned is None:
@@ -42,6 +72,109 @@ def planned_words(planned: PlannedTest | None) -> str:
     return ", ".join(stated)
 
 
+def name_of_part(part: Part) -> str:
+    """A part of an up and go as it is called."""
+    return {
+        Part.RISE: tr("Rise"),
+        Part.WALK_OUT: tr("Walk out"),
+        Part.TURN: tr("Turn"),
+        Part.WALK_BACK: tr("Walk back"),
+        Part.TURN_TO_SIT: tr("Turn to sit"),
+        Part.SIT: tr("Sit down"),
+    }[part]
+
+
+def not_valid_sentence(test: TimedTest) -> str:
+    """Why a test is not the one that it is called, by the gravest reason; empty where nothing shows that."""
+    if not test.not_valid:
+        return ""
+    first = min(test.not_valid, key=GRAVEST_FIRST.index)
+    length = tr("{found} m from the chair to the turn, the course is {course} m")
+    turns = tr("{turns} turns, the course has 2")
+    if test.protocol is TimedProtocol.TEN_METRES:
+        length = tr("{walked} m by the feet, {course} m between the tapes")
+        turns = tr("turned round on the way")
+    reason = {
+        NotValid.COURSE_SHORTER: length,
+        NotValid.COURSE_LONGER: length,
+        NotValid.NO_RISE: tr("no rise from the chair"),
+        NotValid.NO_TURN: tr("{walked} m walked without a turn, the course turns at {course} m"),
+        NotValid.NO_TURN_TO_SIT: tr("no turn before sitting down"),
+        NotValid.MORE_TURNS: turns,
+        NotValid.ELSEWHERE: tr("seated elsewhere than at the start"),
+        NotValid.LAP_DIFFERS: tr("laps of {found} m by the feet, {course} m entered"),
+        NotValid.DISTANCE_DIFFERS: tr("{distance} m entered, {walked} m by the feet"),
+    }[first]
+    stated = reason.format(
+        found=figure_text(test.course_found_m, ".1f"),
+        course=short_figure(test.course_m, 2),
+        walked=figure_text(test.sensor_distance_m, ".1f"),
+        distance=short_figure(test.distance_m, 1),
+        turns=sum(turn.is_about for turn in test.turns),
+    )
+    return tr("Not valid: {reason}.").format(reason=stated)
+
+
+def not_compared_sentence(test: TimedTest) -> str:
+    """What was timed of a test that is not valid, and that nothing is made of it."""
+    return tr("{result} Not compared, and in no mean.").format(result=result_sentence(test))
+
+
+def remedy_sentence(test: TimedTest) -> str:
+    """What to do about a test that is not valid; empty where it is."""
+    if not test.not_valid:
+        return ""
+    repeat = tr("Repeat the test on a course of {course} m, or enter the length that was laid out.")
+    return {
+        NotValid.COURSE_SHORTER: repeat,
+        NotValid.COURSE_LONGER: repeat,
+        NotValid.NO_RISE: tr("Repeat the test, seated at the start."),
+        NotValid.NO_TURN: tr("Repeat the test: round the cone and back to the chair."),
+        NotValid.NO_TURN_TO_SIT: tr("Repeat the test: turn round before sitting down."),
+        NotValid.MORE_TURNS: tr("Repeat the test without further turns."),
+        NotValid.ELSEWHERE: tr("Repeat the test: back to the chair that it began from."),
+        NotValid.LAP_DIFFERS: tr("Check the length of the lap."),
+        NotValid.DISTANCE_DIFFERS: tr("Check the laps, their length and the rest."),
+    }[min(test.not_valid, key=GRAVEST_FIRST.index)].format(course=short_figure(test.course_m, 2))
+
+
+def source_sentence(test: TimedTest) -> str:
+    """Where the distance of a set time is from; empty of any other test, and without a distance."""
+    if test.definition.duration_s is None or not math.isfinite(test.distance_m):
+        return ""
+    stated = {
+        DistanceSource.TYPED: tr("Distance: laps entered, {lap} m each"),
+        DistanceSource.FOUND_LAPS: tr("Distance: laps detected, {lap} m each"),
+    }.get(test.distance_source, tr("Distance: foot sensors"))
+    stated = stated.format(lap=short_figure(test.course_m, 2))
+    if test.distance_source is DistanceSource.FEET or not math.isfinite(test.sensor_distance_m):
+        return f"{stated}."
+    feet = figure_text(test.sensor_distance_m, ".0f")
+    return tr("{source}; the foot sensors measured {feet} m.").format(source=stated, feet=feet)
+
+
+def sentences_of(test: TimedTest) -> list[str]:
+    """All that is stated of a test behind its result, in order; what does not hold of it is left out."""
+    stated = (
+        why_sentence(test),
+        source_sentence(test),
+        tape_sentence(test),
+        slowest_sentence(test),
+        stairs_sentence(test),
+        course_sentence(test),
+        pauses_sentence(test),
+    )
+    return [one for one in stated if one]
+
+
+def slowest_sentence(test: TimedTest) -> str:
+    """Which of several rises took longest; empty where there are not several."""
+    if test.definition.rises < 2 or len(test.rises) < 2:
+        return ""
+    number, slowest = max(enumerate(test.rises, 1), key=lambda one: one[1].time_s)
+    return tr("Slowest rise: number {number}, {time} s.").format(number=number, time=figure_text(slowest.time_s, ".2f"))
+
+
 def start_words(protocol: TimedProtocol) -> str:
     """What starts the clock where no key does."""
     if protocol is TimedProtocol.TEN_METRES:
@@ -51,16 +184,17 @@ def start_words(protocol: TimedProtocol) -> str:
     return tr("first step after standing still for 1 s")
 
 
-def end_words(protocol: TimedProtocol) -> str:
+def end_words(planned: PlannedTest) -> str:
     """What ends it where no key does."""
+    further = tr("{course} m further on, by the sensors").format(course=short_figure(course_of(planned) or 0.0, 2))
     return {
-        TimedProtocol.TEN_METRES: tr("10 m further on, by the sensors"),
+        TimedProtocol.TEN_METRES: further,
         TimedProtocol.TWO_MINUTES: tr("after 2:00 min"),
         TimedProtocol.SIX_MINUTES: tr("after 6:00 min"),
         TimedProtocol.UP_AND_GO: tr("seated again"),
         TimedProtocol.SIT_TO_STAND: tr("standing for the fifth time"),
         TimedProtocol.STAIRS: tr("when the last step ends"),
-    }[protocol]
+    }[planned.protocol]
 
 
 def reason_words(reason: NotMeasured) -> str:
@@ -92,6 +226,8 @@ def result_sentence(test: TimedTest) -> str:
         stated = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
     elif test.protocol is TimedProtocol.TEN_METRES and math.isfinite(test.speed_m_s):
         stated = [f"{figure_text(test.speed_m_s, '.2f')} m/s", f"{figure_text(test.time_s, '.1f')} s"]
+        if math.isfinite(test.course_m) and test.course_m != test.definition.length_m:
+            stated.append(f"{short_figure(test.course_m, 2)} m")
     elif test.definition.duration_s is None:
         stated = [f"{figure_text(test.time_s, '.1f')} s"]
     if not stated:
@@ -141,20 +277,11 @@ def pauses_sentence(test: TimedTest) -> str:
 
 
 def stairs_sentence(test: TimedTest) -> str:
-    """How many strides led up and down, and how long they took; empty where none did."""
-    stated = []
-    for is_up, words in (
-        (True, tr("strides up: {count}, mean duration {time:.2f} s")),
-        (False, tr("strides down: {count}, mean duration {time:.2f} s")),
-    ):
-        times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
-        if times_s:
-            stated.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
-    return (
-        tr("Strides on stairs are excluded from the means of walking: {strides}.").format(strides="; ".join(stated))
-        if stated
-        else ""
-    )
+    """How many strides led up and down, which no mean of walking holds; empty where none did."""
+    up, down = (sum(one.is_up is is_up for one in test.stairs) for is_up in (True, False))
+    if not test.stairs:
+        return ""
+    return tr("Strides on stairs: {up} up, {down} down; excluded from the means of walking.").format(up=up, down=down)
 
 
 def course_sentence(test: TimedTest) -> str:

@@ -23,6 +23,61 @@ class NotMeasured(StrEnum):
     SILENT = "foot_sensor_silent"
 
 
+class NotValid(StrEnum):
+    """Why a test that was timed is not the test that it is called. The values are the words of timed_test.csv."""
+
+    COURSE_SHORTER = "course_shorter_than_entered"
+    COURSE_LONGER = "course_longer_than_entered"
+    NO_RISE = "no_rise"
+    NO_TURN = "no_turn_at_the_cone"
+    NO_TURN_TO_SIT = "no_turn_before_sitting"
+    MORE_TURNS = "more_turns_than_the_course_has"
+    ELSEWHERE = "not_back_at_the_chair"
+    LAP_DIFFERS = "lap_length_differs_from_feet"
+    DISTANCE_DIFFERS = "typed_distance_differs_from_feet"
+
+
+class Validity(StrEnum):
+    """Whether a test was walked as it asks for. The values are the words of timed_test.csv."""
+
+    VALID = "valid"
+    NOT_VALID = "not_valid"
+    NOT_CHECKED = "not_checked"  # nothing to hold it against, or no foot sensor that shows it
+
+
+class DistanceSource(StrEnum):
+    """Where the distance that counts is from. The values are the words of timed_test.csv."""
+
+    FEET = "feet"
+    TAPE = "tape"  # set by the test, between two marks
+    TYPED = "typed"  # laps and the rest, as they were entered
+    FOUND_LAPS = "found_laps"  # laps that the turns show, of the length that was entered
+
+
+class Part(StrEnum):
+    """The parts of an up and go, in order. The values are the words of timed_test.csv."""
+
+    RISE = "rise"
+    WALK_OUT = "walk_out"
+    TURN = "turn"
+    WALK_BACK = "walk_back"
+    TURN_TO_SIT = "turn_to_sit"
+    SIT = "sit"
+
+
+@dataclass(frozen=True, slots=True)
+class UpAndGoPart:
+    """One part of an up and go, on the recording's clock; NaN where a border was not found."""
+
+    part: Part
+    start_s: float
+    end_s: float
+
+    @property
+    def time_s(self) -> float:
+        return self.end_s - self.start_s
+
+
 @dataclass(frozen=True, slots=True)
 class Turn:
     """A turn of the body: when, and how far, positive to the left."""
@@ -70,6 +125,22 @@ class Rise:
     left_seat_s: float
     upright_s: float
 
+    @property
+    def time_s(self) -> float:
+        return self.upright_s - self.left_seat_s
+
+
+@dataclass(frozen=True, slots=True)
+class Sitting:
+    """The thighs left standing, and came to rest on the seat, seconds."""
+
+    left_upright_s: float
+    seated_s: float
+
+    @property
+    def time_s(self) -> float:
+        return self.seated_s - self.left_upright_s
+
 
 @dataclass(frozen=True, slots=True)
 class TimedPart:
@@ -87,7 +158,11 @@ class TimedTest:
     """What one test gives; NaN where not measured, and `missing` names the reason.
 
     `start_s`, `end_s`: on the recording's clock.
-    `distance_m`: what counts: where a key ends a walk between tapes the tapes', else the sensors', turns included.
+    `distance_m`: what counts, and `distance_source` where it is from.
+    `parts`: of an up and go all six, in order; of any other test none.
+    `course_m`: from the chair to the cone, between the tapes, or of a lap, as entered or as the test has it; NaN where
+    there is nothing to hold it against. `course_found_m`: the same by the feet.
+    `not_valid`: in what it was not the test that it is called; see `core.timed.validity`.
     """
 
     protocol: TimedProtocol
@@ -106,6 +181,23 @@ class TimedTest:
     silences: tuple[Silence, ...]
     missing: tuple[NotMeasured, ...]
     stairs: tuple[StairStride, ...] = ()
+    parts: tuple[UpAndGoPart, ...] = ()
+    sittings: tuple[Sitting, ...] = ()
+    course_m: float = math.nan
+    course_found_m: float = math.nan
+    not_valid: tuple[NotValid, ...] = ()
+    distance_source: DistanceSource = DistanceSource.FEET
+
+    @property
+    def validity(self) -> Validity:
+        if self.not_valid:
+            return Validity.NOT_VALID
+        return Validity.VALID if math.isfinite(self.course_found_m) else Validity.NOT_CHECKED
+
+    @property
+    def is_valid(self) -> bool:
+        """Whether nothing shows that it was another test; also where nothing could be checked."""
+        return not self.not_valid
 
     @property
     def time_s(self) -> float:

@@ -19,7 +19,7 @@ from core.signal.orientation import oriented
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import Track
 from core.timed.found import NotMeasured, TimedTest
-from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
+from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest
 from core.timed.seat import NO_SEAT, STEP_S, SeatMotions, motions_of_tilt
 from core.timed.timing import origin_of, timed
 from core.timed.way import BodyWay, FootSwings, ReceivedFoot, moving_pieces, swings_of, way_of
@@ -34,7 +34,7 @@ KEY_AT_START_S = 1.5  # a key pressed so shortly after the motion began meant th
 RUN_OUT_S = 2.5  # after the motion has ended a test, a key may still say where the tape is
 
 
-NO_SWINGS = FootSwings(np.empty(0), np.empty(0), np.empty(0), np.empty((0, 2)), np.empty(0))
+NO_SWINGS = FootSwings(np.empty(0), np.empty(0), np.empty(0), np.empty(0), np.empty((0, 2)), np.empty((0, 2)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,16 +89,16 @@ class LiveTest:
 
     def __init__(
         self,
-        protocol: TimedProtocol,
+        planned: PlannedTest,
         upright: Mapping[Site, FloatArray],
         rigid_sides: frozenset[Side],
         feet: frozenset[Side],
         from_s: float,
     ) -> None:
-        self.planned = PlannedTest(protocol)  # set by the screen, read by the estimator
+        self.planned = planned  # its keys are set by the screen, and read by the estimator
         self._from_s = from_s
         self._feet = {side: _LiveFootWay(side, side in rigid_sides, from_s) for side in Side if side in feet}
-        chair = DEFINITIONS[protocol].is_from_chair
+        chair = DEFINITIONS[planned.protocol].is_from_chair
         self._thighs = {site: _LiveThigh(up, from_s) for site, up in upright.items() if chair}
         self._looked_s = self._now_s = -math.inf
         self.state = LiveReadout(self.planned)
@@ -215,29 +215,29 @@ class _LiveFootWay:
         if len(self._kept) < LEAST_SAMPLES:
             return fresh
         whole = _track(self._kept)
-        last_s = float(self._settled.contact_s[-1]) if len(self._settled.contact_s) else self._from_s
+        last_s = max(self._settled.ended_s, self._from_s)
         pieces = moving_pieces(whole)
         self.is_still = not pieces or pieces[-1].track.end_s < whole.track.end_s - 0.5 * whole.track.step_s
         for piece in pieces:
-            found = swings_of(piece, self._is_rigid)
-            found = found.select(found.toe_off_s > last_s - OVERLAP_S)
-            is_old = found.contact_s < settled_to_s
-            self._settled = _followed(self._settled, found.select(is_old))
-            fresh = _followed(fresh, found.select(~is_old))
+            found = swings_of(piece, self._is_rigid).between(last_s - OVERLAP_S, math.inf)
+            settled = found.between(-math.inf, settled_to_s)
+            self._settled = _followed(self._settled, settled)
+            fresh = _followed(fresh, found.between(settled.ended_s - OVERLAP_S, math.inf))
         return fresh
 
 
 def _followed(one: FootSwings, other: FootSwings) -> FootSwings:
     """Swings and those after them, the heading going on from the ones to the others."""
-    if not len(one.contact_s) or not len(other.contact_s):
-        return one if len(one.contact_s) else other
+    if not len(one.turned_s) or not len(other.turned_s):
+        return one if len(one.turned_s) else other
     turned_rad = one.heading_rad[-1, 1] - other.heading_rad[0, 0]
     return FootSwings(
         np.concatenate([one.toe_off_s, other.toe_off_s]),
         np.concatenate([one.contact_s, other.contact_s]),
         np.concatenate([one.arc_m, other.arc_m]),
-        np.concatenate([one.heading_rad, other.heading_rad + turned_rad]),
         np.concatenate([one.climb_m, other.climb_m]),
+        np.concatenate([one.turned_s, other.turned_s]),
+        np.concatenate([one.heading_rad, other.heading_rad + turned_rad]),
     )
 
 

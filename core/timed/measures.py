@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.timed.found import TimedTest
+from core.timed.found import DistanceSource, TimedTest
 from core.timed.protocols import TimedProtocol
 
 COLUMNS: Mapping[TimedProtocol, str] = {
@@ -24,10 +24,18 @@ PROTOCOLS: Mapping[str, TimedProtocol] = {column: protocol for protocol, column 
 
 @dataclass(frozen=True, slots=True)
 class MeanOfAttempts:
-    """The mean of one test over the attempts of a visit that have its figure; NaN without any."""
+    """The mean of one test over the valid attempts of a visit that have its figure; NaN without any."""
 
     mean: float
     attempts: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """Walking speed, m/s, over a whole test and over each third of it, pauses included; NaN where not measured."""
+
+    speed_m_s: float
+    thirds_m_s: tuple[float, ...]
 
 
 def figure_of(test: TimedTest) -> float:
@@ -40,8 +48,28 @@ def figure_of(test: TimedTest) -> float:
 def rests_on_feet(test: TimedTest) -> bool:
     """Whether the figure is as sure as the way that the feet show: no tape, no chair marks where it ends."""
     if test.definition.duration_s is not None:
-        return True
+        return test.distance_source is DistanceSource.FEET
     return test.definition.length_m is not None and not test.is_end_by_key
+
+
+def counted_figure(test: TimedTest) -> float:
+    """Give the figure that counts in a mean of attempts; NaN also where the test is not valid."""
+    return figure_of(test) if test.is_valid else math.nan
+
+
+def pace_of(test: TimedTest) -> Pace:
+    """Give the speed over a walked test and its thirds; NaN of rises, which lead nowhere."""
+    return Pace(test.speed_m_s, tuple(one.speed_m_s for one in test.thirds))
+
+
+def mean_pace(tests: Iterable[TimedTest]) -> Pace:
+    """Average the pace of the attempts that are valid, each third over those that have it."""
+    paces = [pace_of(test) for test in tests if test.is_valid]
+    thirds = zip(*(pace.thirds_m_s for pace in paces if pace.thirds_m_s), strict=False)
+    return Pace(
+        mean_of_attempts(pace.speed_m_s for pace in paces).mean,
+        tuple(mean_of_attempts(values).mean for values in thirds),
+    )
 
 
 def mean_of_attempts(values: Iterable[float]) -> MeanOfAttempts:

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 
@@ -31,52 +31,76 @@ class KeyMeaning(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PlannedTest:
-    """That a walk is a test, and when a key was pressed at its start and at its end, on the recording's clock.
+    """That a walk is a test, and what was entered about it; None where nothing was.
+
+    `start_key_s`, `end_key_s`: when a key was pressed at its start and its end, on the recording's clock.
+    `course_m`: of the course as it is laid out: from the chair to the cone, or between the tapes.
+    `lap_m`: from one turn to the next in a test of a set time; `typed_laps`: how many such laps were completed;
+    `rest_m`: how far the patient came in the lap after them.
 
     Raises
     ------
     ValueError
-        A time that is none, or an end that is not after its start.
+        A time or a length that is none, a length or a number below zero, or an end that is not after its start.
     """
 
     protocol: TimedProtocol
     start_key_s: float | None = None
     end_key_s: float | None = None
+    course_m: float | None = None
+    lap_m: float | None = None
+    typed_laps: int | None = None
+    rest_m: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("start_key_s", "end_key_s"):
+        for name in ("start_key_s", "end_key_s", "course_m", "lap_m", "typed_laps", "rest_m"):
             value = getattr(self, name)
             if value is not None and not math.isfinite(value):
-                raise ValueError(f"{name} is {value}, expected seconds or None")
+                raise ValueError(f"{name} is {value}, expected a figure or None")
+        for name in ("course_m", "lap_m"):
+            value = getattr(self, name)
+            if value is not None and value <= 0.0:
+                raise ValueError(f"{name} is {value}, expected more than 0 m")
+        for name in ("typed_laps", "rest_m"):
+            value = getattr(self, name)
+            if value is not None and value < 0:
+                raise ValueError(f"{name} is {value}, expected 0 or more")
         if self.start_key_s is not None and self.end_key_s is not None and self.end_key_s <= self.start_key_s:
             raise ValueError(f"the end {self.end_key_s} is not after the start {self.start_key_s}")
 
 
-TABLE_KEYS = ("test", "test_start_s", "test_end_s")
+TABLE_KEYS = (
+    *("test", "test_start_s", "test_end_s"),
+    *("test_course_m", "test_lap_m", "test_laps", "test_rest_m"),
+)
 
 
 def planned_table(planned: PlannedTest | None) -> dict[str, object]:
     """The keys of session.toml that say of a recording which test it is; none where it is no test."""
     if planned is None:
         return {}
-    values = (str(planned.protocol), planned.start_key_s, planned.end_key_s)
+    keys_s, course_m = (planned.start_key_s, planned.end_key_s), planned.course_m
+    values = (str(planned.protocol), *keys_s, course_m, planned.lap_m, planned.typed_laps, planned.rest_m)
     return {key: value for key, value in zip(TABLE_KEYS, values, strict=True) if value is not None}
 
 
 def planned_of_table(table: Mapping[str, object]) -> PlannedTest | None:
     """What `planned_table` wrote; None where it contains nothing, or something that no test of ours is."""
-    protocol, *keys_s = (table.get(key) for key in TABLE_KEYS)
+    protocol, *figures = (table.get(key) for key in TABLE_KEYS)
     if not isinstance(protocol, str) or protocol not in set(TimedProtocol):
         return None
-    start_s, end_s = (_seconds(value) for value in keys_s)
+    start_s, end_s, course_m, lap_m, laps, rest_m = (_figure(value) for value in figures)
+    if laps is not None and not laps.is_integer():
+        return None
+    count = None if laps is None else int(laps)
     try:
-        return PlannedTest(TimedProtocol(protocol), start_s, end_s)
+        return PlannedTest(TimedProtocol(protocol), start_s, end_s, course_m, lap_m, count, rest_m)
     except ValueError:
         return None
 
 
-def _seconds(value: object) -> float | None:
-    """A time, NaN where it is something else, None where there is none."""
+def _figure(value: object) -> float | None:
+    """A figure, NaN where it is something else, None where there is none."""
     if value is None:
         return None
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else math.nan
@@ -132,6 +156,7 @@ class Definition:
     duration_s: float | None = None  # of a test of a set time
     tape_m: tuple[float, float] | None = None
     rises: int = 0  # how often the patient rises
+    course_m: float | None = None  # from the chair to the cone
     is_walked: bool = True  # whether there are strides in it: a patient who rises and sits makes none
     errors: tuple[KnownError, ...] = ()
 
@@ -174,6 +199,7 @@ DEFINITIONS: Mapping[TimedProtocol, Definition] = {
         _LEFT_SEAT,
         "the thighs have come nine tenths of the way down",
         rises=1,
+        course_m=3.0,
         errors=(_worst("distance_percent", 2.3, 50), _worst("time_s", 0.06, 50)),
     ),
     TimedProtocol.STAIRS: Definition(
@@ -189,3 +215,18 @@ DEFINITIONS: Mapping[TimedProtocol, Definition] = {
         errors=(_worst("time_s", 0.08, 40),),
     ),
 }
+
+
+def course_of(planned: PlannedTest) -> float | None:
+    """Give the length of the course as entered, else as the test has it, m; None where it has none, or no lap."""
+    definition = DEFINITIONS[planned.protocol]
+    return planned.course_m or planned.lap_m or definition.course_m or definition.length_m
+
+
+def with_course(planned: PlannedTest, length_m: float | None) -> PlannedTest:
+    """Enter the length of the course, m, of a test of a set time its lap; None: as the test has it."""
+    definition = DEFINITIONS[planned.protocol]
+    if definition.duration_s is not None:
+        return replace(planned, lap_m=length_m)
+    is_own = length_m == (definition.course_m or definition.length_m)
+    return replace(planned, course_m=None if is_own else length_m)

@@ -17,7 +17,7 @@ from core.body import Segment, Side, Site
 from core.samples import BoolArray, FloatArray
 from core.session import Recording, RecordingKind
 from core.signal.sensors import SensorTracks
-from core.timed.found import Rise
+from core.timed.found import Rise, Sitting
 
 STEP_S = 0.01
 SEATED_RAD, STANDING_RAD = np.deg2rad(50.0), np.deg2rad(30.0)  # a step lifts the mean of both thighs by less
@@ -31,7 +31,7 @@ class SeatMotions:
     """Every rise and every sitting down, ascending; `has_thighs` False: nothing shows them."""
 
     rises: tuple[Rise, ...]
-    seated_s: tuple[float, ...]
+    sittings: tuple[Sitting, ...]
     has_thighs: bool = True
 
 
@@ -81,7 +81,7 @@ def motions_of_tilt(time_s: FloatArray, tilt_rad: FloatArray) -> SeatMotions:
     rate = np.abs(np.gradient(tilt_rad, time_s)) if len(time_s) > 1 else np.zeros_like(tilt_rad)
     edges = [0, *(int(sure[k + 1]) for k in changes), len(tilt_rad)]
     near = round(REST_S / STEP_S)
-    rises, seated = [], []
+    rises, sittings = [], []
     for number, k in enumerate(changes.tolist()):
         before, after = int(sure[k]), int(sure[k + 1])
         earlier, later = slice(edges[number], before + 1), slice(after, edges[number + 2])
@@ -94,9 +94,10 @@ def motions_of_tilt(time_s: FloatArray, tilt_rad: FloatArray) -> SeatMotions:
         else:
             seat = _seat_level(tilt_rad[later], rate[later])
             stand = float(tilt_rad[earlier][-near:].min())
-            down = np.argmax(tilt_rad[later] >= seat - EDGE_SHARE * (seat - stand))
-            seated.append(float(time_s[after + int(down)]))
-    return SeatMotions(tuple(rises), tuple(seated))
+            begins = _last(tilt_rad[: after + 1] <= stand + EDGE_SHARE * (seat - stand), edges[number])
+            down = after + int(np.argmax(tilt_rad[later] >= seat - EDGE_SHARE * (seat - stand)))
+            sittings.append(Sitting(float(time_s[begins]), float(time_s[down])))
+    return SeatMotions(tuple(rises), tuple(sittings))
 
 
 def _seat_level(tilt: FloatArray, rate: FloatArray) -> float:

@@ -5,6 +5,7 @@ given beside it. A foot sensor that falls silent takes the distance, never the t
 """
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,9 +13,21 @@ import numpy as np
 from core.gait.stairs import FootClimbs, on_stairs
 from core.session import Recording
 from core.signal.sensors import SensorTracks
-from core.timed.found import NotMeasured, StairStride, TimedPart, TimedTest
+from core.timed.found import DistanceSource, NotMeasured, StairStride, TimedPart, TimedTest, Turn, UpAndGoPart
+from core.timed.parts import parts_of
 from core.timed.protocols import DEFINITIONS, Definition, PlannedTest
 from core.timed.seat import NO_SEAT, SeatMotions, seat_motions
+from core.timed.validity import (
+    NOT_CHECKED,
+    Checked,
+    Laps,
+    check_laps,
+    check_straight,
+    check_up_and_go,
+    cone_turns,
+    laps_of,
+    length_reasons,
+)
 from core.timed.way import BodyWay, body_way, laps_between, pauses_of, start_of, turns_of
 
 THIRDS = 3
@@ -49,10 +62,8 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
     elif has_way and not len(way.time_s):
         missing.append(NotMeasured.NO_FEET)
     walked = way.way_at(end_s) - origin_of(way, start_s) if has_distance else math.nan
-    length_m = definition.length_m
-    if length_m is not None and planned.end_key_s is None and has_distance:
-        walked = length_m
     inside = tuple(t for t in turns_of(way) if start_s <= t.middle_s <= end_s)
+    course = _course(way, seat, planned, inside, (start_s, end_s), walked) if is_whole else NO_COURSE
     thirds_s = np.linspace(start_s, end_s, THIRDS + 1).tolist() if is_whole else []
     return TimedTest(
         protocol=planned.protocol,
@@ -60,8 +71,8 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
         end_s=end_s,
         is_start_by_key=planned.start_key_s is not None,
         is_end_by_key=planned.end_key_s is not None,
-        distance_m=length_m if length_m is not None and planned.end_key_s is not None and is_whole else walked,
-        sensor_distance_m=walked,
+        distance_m=course.distance_m,
+        sensor_distance_m=course.sensor_distance_m,
         cadence_steps_min=way.cadence_in(start_s, end_s),
         turns=inside,
         pauses_s=tuple((a, b) for a, b in pauses_of(way) if start_s <= a < end_s),
@@ -71,7 +82,78 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
         silences=silences,
         missing=tuple(dict.fromkeys(missing)),
         stairs=stairs_in(way, start_s, end_s, are_declared=planned.protocol.is_on_stairs) if is_whole else (),
+        parts=_parts(way, seat, definition, inside, (start_s, end_s)),
+        sittings=tuple(one for one in seat.sittings if start_s < one.seated_s <= end_s),
+        course_m=course.course_m,
+        course_found_m=course.checked.found_m,
+        not_valid=course.checked.reasons,
+        distance_source=course.source,
     )
+
+
+def _parts(
+    way: BodyWay, seat: SeatMotions, definition: Definition, turns: tuple[Turn, ...], span_s: tuple[float, float]
+) -> tuple[UpAndGoPart, ...]:
+    """All six of an up and go that was finished; a silence takes the turns."""
+    if definition.course_m is None or not all(map(math.isfinite, span_s)):
+        return ()
+    at_cone = (None, None) if way.silences_in(*span_s) else cone_turns(way, turns, *span_s)
+    return parts_of(way, seat, at_cone, *span_s)
+
+
+@dataclass(frozen=True, slots=True)
+class _Course:
+    """Which distance counts, and what the course was."""
+
+    distance_m: float = math.nan
+    sensor_distance_m: float = math.nan
+    source: DistanceSource = DistanceSource.FEET
+    course_m: float = math.nan
+    checked: Checked = NOT_CHECKED
+
+
+NO_COURSE = _Course()
+
+
+def _course(
+    way: BodyWay,
+    seat: SeatMotions,
+    planned: PlannedTest,
+    turns: tuple[Turn, ...],
+    span_s: tuple[float, float],
+    walked_m: float,
+) -> _Course:
+    """The distance that counts, and the course held against the way of the feet."""
+    definition = DEFINITIONS[planned.protocol]
+    if definition.course_m is not None:
+        course_m = planned.course_m or definition.course_m
+        return _Course(
+            walked_m, walked_m, course_m=course_m, checked=check_up_and_go(way, seat, turns, span_s, course_m)
+        )
+    if definition.length_m is not None:
+        length_m = planned.course_m or definition.length_m
+        if planned.end_key_s is None:
+            found_m = length_m if math.isfinite(walked_m) else math.nan
+            checked = Checked(math.nan, check_straight(turns))
+            return _Course(found_m, found_m, course_m=length_m, checked=checked)
+        reasons = (*check_straight(turns), *length_reasons(walked_m, length_m))
+        return _Course(length_m, walked_m, DistanceSource.TAPE, length_m, Checked(walked_m, reasons))
+    if definition.duration_s is not None and planned.lap_m is not None:
+        return _by_laps(laps_of(way, turns, *span_s), planned, walked_m)
+    return _Course(walked_m, walked_m)
+
+
+def _by_laps(laps: Laps, planned: PlannedTest, walked_m: float) -> _Course:
+    """Laps of an entered length: as many as were entered, else as many as were found."""
+    lap_m = planned.lap_m or math.nan
+    found_m = laps.completed * lap_m + min(laps.rest_m, lap_m)
+    typed_m = math.nan if planned.typed_laps is None else planned.typed_laps * lap_m + (planned.rest_m or 0.0)
+    checked = check_laps(laps, lap_m, typed_m, found_m, lap_m if planned.rest_m is None else 0.0)
+    if math.isfinite(typed_m):
+        return _Course(typed_m, walked_m, DistanceSource.TYPED, lap_m, checked)
+    if math.isfinite(found_m) and laps.completed:
+        return _Course(found_m, walked_m, DistanceSource.FOUND_LAPS, lap_m, checked)
+    return _Course(walked_m, walked_m, course_m=lap_m, checked=checked)
 
 
 def _by_keys(start_s: float, end_s: float, planned: PlannedTest) -> tuple[float, float]:
@@ -93,7 +175,7 @@ def _chair(
         missing.append(NotMeasured.NO_RISE)
     later = [rise for rise in seat.rises if rise.upright_s > first_s]
     if definition.rises == 1:
-        ends = [s for s in seat.seated_s if later and s > later[0].upright_s]
+        ends = [one.seated_s for one in seat.sittings if later and one.seated_s > later[0].upright_s]
         return first_s, ends[0] if ends else math.nan
     return first_s, later[definition.rises - 1].upright_s if len(later) >= definition.rises else math.nan
 
@@ -111,6 +193,7 @@ def _on_foot(
         start_s = first_s if key_s is None else key_s
         return start_s, _end_on_foot(definition, way, start_s)
     begin_m, end_m = definition.tape_m
+    end_m = begin_m + planned.course_m if planned.course_m is not None else end_m
     start_s = way.passes_s(way.way_at(left_s) + begin_m) if key_s is None else key_s
     end_s = way.passes_s(way.way_at(start_s) + end_m - begin_m) if math.isfinite(start_s) else math.nan
     # a way that was not received shows no mark on it

@@ -6,7 +6,7 @@ a swing does not count.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +16,7 @@ from core.gait.events import FootEvents, detect_events
 from core.gait.foot import FootMotion, follow
 from core.gait.strides import MAX_STRIDE_S
 from core.gait.walking import prosthetic_sides
-from core.samples import BoolArray, FloatArray
+from core.samples import FloatArray
 from core.session import Recording
 from core.signal.pair import OrientedTrack, moving_mean
 from core.signal.sensors import SensorTracks
@@ -32,6 +32,7 @@ LOST_SWING_S = 1.5  # beside a silence a swing may be missing
 TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides turn a foot by up to 5 deg
 MIN_TURN_RAD = np.deg2rad(60.0)
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
+PIVOT_RAD, PIVOT_EDGE = np.deg2rad(10.0), 0.1  # a foot that turned so far has turned, from a tenth to nine tenths of it
 MAX_ARC_RAD = np.deg2rad(150.0)
 USUAL_STRIDE_S = 1.2  # where no stride shows it
 
@@ -40,13 +41,16 @@ USUAL_STRIDE_S = 1.2  # where no stride shows it
 class FootSteps:
     """One foot's swings, ascending: when it left, when it landed, and where to (k,).
 
-    `length_m` is how far it went over the floor, `climb_m` how much higher it came to stand.
+    `length_m` is how far it went over the floor, `climb_m` how much higher it came to stand. `turned_s` and
+    `heading_rad`, (n, 2): from when to when it turned, in a swing or on the spot, and its direction before and after.
     """
 
     toe_off_s: FloatArray
     contact_s: FloatArray
     length_m: FloatArray
     climb_m: FloatArray
+    turned_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    heading_rad: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,21 +100,35 @@ class BodyWay:
 
 @dataclass(frozen=True, slots=True)
 class FootSwings:
-    """One foot's swings, ascending: toe-off and contact, the arc of the body's way, the heading before and after.
+    """One foot's swings (k,), ascending: toe-off and contact, the arc of the body's way, and how far it rises.
 
-    All (k,) but `heading_rad` (k, 2), which goes on from one swing to the next. `climb_m`: how far it rises.
+    `turned_s` and `heading_rad`, (n, 2), n >= k: of each swing, and of each time that the foot turned on the spot,
+    which is no swing; the heading goes on from one to the next.
     """
 
     toe_off_s: FloatArray
     contact_s: FloatArray
     arc_m: FloatArray
-    heading_rad: FloatArray
     climb_m: FloatArray
+    turned_s: FloatArray
+    heading_rad: FloatArray
 
-    def select(self, rows: BoolArray) -> "FootSwings":
-        """The swings of these rows."""
+    @property
+    def ended_s(self) -> float:
+        """When the last of them was over."""
+        return float(max(self.contact_s.max(initial=-np.inf), self.turned_s.max(initial=-np.inf)))
+
+    def between(self, from_s: float, to_s: float) -> "FootSwings":
+        """The swings and turns that begin after one instant and end before another."""
+        rows = (self.toe_off_s > from_s) & (self.contact_s < to_s)
+        turns = (self.turned_s[:, 0] > from_s) & (self.turned_s[:, 1] < to_s)
         return FootSwings(
-            self.toe_off_s[rows], self.contact_s[rows], self.arc_m[rows], self.heading_rad[rows], self.climb_m[rows]
+            self.toe_off_s[rows],
+            self.contact_s[rows],
+            self.arc_m[rows],
+            self.climb_m[rows],
+            self.turned_s[turns],
+            self.heading_rad[turns],
         )
 
 
@@ -145,8 +163,10 @@ def swings_of(one: OrientedTrack, is_rigid: bool) -> FootSwings:
     motion = follow(one)
     events = detect_events(motion, one.track.is_measured, is_rigid)
     off_s, on_s = _moments(motion, events)
-    heading = _headings(one, motion).reshape(-1, 2)
-    return FootSwings(off_s, on_s, _arcs(events.length_m, heading[:, 1] - heading[:, 0]), heading, events.climb_m)
+    heading = _headings(one)
+    swung_rad = heading[motion.swings.anchor_after] - heading[motion.swings.anchor_before]
+    turned_s, headings = _turnings(motion, np.stack([off_s, on_s], axis=1), heading)
+    return FootSwings(off_s, on_s, _arcs(events.length_m, swung_rad), events.climb_m, turned_s, headings)
 
 
 def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> BodyWay:
@@ -165,17 +185,29 @@ def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> B
         for swings in foot.swings:
             total_m = np.cumsum(swings.arc_m)
             way_m = np.stack([total_m - swings.arc_m, total_m], axis=1).ravel()
-            speed += _rate(time_s, swings.toe_off_s, swings.contact_s, way_m)
-            turning += _rate(time_s, swings.toe_off_s, swings.contact_s, swings.heading_rad.ravel())
+            speed += _rate(time_s, np.stack([swings.toe_off_s, swings.contact_s], axis=1), way_m)
+            turning += _rate(time_s, swings.turned_s, swings.heading_rad.ravel())
         names = ("toe_off_s", "contact_s", "arc_m", "climb_m")
-        every = [[np.empty(0), *(getattr(swings, name) for swings in foot.swings)] for name in names]
-        steps[side] = FootSteps(*(np.concatenate(one) for one in every))
+        every = {name: [np.empty(0), *(getattr(swings, name) for swings in foot.swings)] for name in names}
+        off_s, on_s, length_m, climb_m = (np.concatenate(every[name]) for name in names)
+        turned_s = np.concatenate([np.empty((0, 2)), *(swings.turned_s for swings in foot.swings)])
+        steps[side] = FootSteps(off_s, on_s, length_m, climb_m, turned_s, _chained(foot.swings))
         silences += _silences(foot, start_s, end_s)
         speeds.append(speed)
         turnings.append(turning)
     # without the rise and fall of speed in each step, which the body has less of than the feet
-    way_m = moving_mean(_total(speeds), max(1, round(0.5 * _usual_stride_s(steps) / STEP_S)))
+    way_m = moving_mean(_total(speeds), max(1, round(0.5 * usual_stride_s(steps) / STEP_S)))
     return BodyWay(time_s, way_m, _total(turnings), steps, tuple(silences))
+
+
+def _chained(swings: tuple[FootSwings, ...]) -> FloatArray:
+    """The headings (n, 2) of all pieces, each going on from the one before: a standing foot does not turn."""
+    parts: list[FloatArray] = [np.empty((0, 2))]
+    for one in swings:
+        if len(one.heading_rad):
+            last = parts[-1][-1, 1] if len(parts[-1]) else 0.0
+            parts.append(one.heading_rad - one.heading_rad[0, 0] + last)
+    return np.concatenate(parts)
 
 
 def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
@@ -217,19 +249,34 @@ def _moments(motion: FootMotion, events: FootEvents) -> tuple[FloatArray, FloatA
     return knots[::2], knots[1::2]
 
 
-def _rate(time_s: FloatArray, off_s: FloatArray, on_s: FloatArray, values: FloatArray) -> FloatArray:
-    """The rate (n,) of what has `values` (2 k,) at the beginning and end of each swing, evenly from one to the next."""
-    if not len(off_s):
+def _rate(time_s: FloatArray, spans_s: FloatArray, values: FloatArray) -> FloatArray:
+    """The rate (n,) of what has `values` (2 k,) at the beginning and end of each span (k, 2), evenly in between."""
+    if not len(spans_s):
         return np.zeros_like(time_s)
-    knots = np.stack([off_s, on_s], axis=1).ravel()
-    return np.asarray(np.diff(np.interp(time_s, knots, values), prepend=values[0]) / STEP_S)
+    return np.asarray(np.diff(np.interp(time_s, spans_s.ravel(), values), prepend=values[0]) / STEP_S)
 
 
-def _headings(one: OrientedTrack, motion: FootMotion) -> FloatArray:
-    """The foot's heading (2 k,), rad, in the stances before and after each swing."""
+def _headings(one: OrientedTrack) -> FloatArray:
+    """How far the foot has turned about the vertical (n,), rad."""
     upward = np.einsum("ni,ni->n", one.earth_from_sensor[:, 2], one.track.gyr_rad_s)
-    heading = np.cumsum(upward) * one.track.step_s
-    return np.asarray(heading[np.stack([motion.swings.anchor_before, motion.swings.anchor_after], axis=1).ravel()])
+    return np.asarray(np.cumsum(upward) * one.track.step_s)
+
+
+def _turnings(motion: FootMotion, swings_s: FloatArray, heading: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """When a foot turned (n, 2) and its heading (n, 2): in its swings (k, 2), and on the spot beside them."""
+    before, after = motion.swings.anchor_before, motion.swings.anchor_after
+    spans = list(zip(swings_s.tolist(), np.stack([heading[before], heading[after]], axis=1).tolist(), strict=True))
+    ends = zip([0, *after.tolist()], [*before.tolist(), len(heading) - 1], strict=True)
+    for begin, end in ends:
+        turned_rad = float(heading[end] - heading[begin]) if begin < end else 0.0
+        if abs(turned_rad) >= PIVOT_RAD:
+            share = (heading[begin : end + 1] - heading[begin]) / turned_rad
+            first, last = int(np.argmax(share > PIVOT_EDGE)), int(np.flatnonzero(share < 1.0 - PIVOT_EDGE)[-1])
+            at_s = motion.time_of(begin + np.array([first, max(last, first + 1)], dtype=float))
+            spans.append((at_s.tolist(), [float(heading[begin]), float(heading[end])]))
+    spans.sort()
+    times, headings = np.array([one[0] for one in spans]), np.array([one[1] for one in spans])
+    return np.maximum.accumulate(times.ravel()).reshape(-1, 2), headings.reshape(-1, 2)
 
 
 def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
@@ -238,7 +285,7 @@ def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
     return np.asarray(chord_m / np.sinc(half / np.pi))
 
 
-def _usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
+def usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
     times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in feet.values())])
     return float(np.median(times[times < MAX_STRIDE_S])) if np.any(times < MAX_STRIDE_S) else USUAL_STRIDE_S
 
@@ -260,7 +307,7 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
     """Every turn of 60 deg and more, by the heading over the time of one stride."""
     if not len(way.time_s):
         return ()
-    half = max(1, round(0.5 * _usual_stride_s(way.feet) / STEP_S))
+    half = max(1, round(0.5 * usual_stride_s(way.feet) / STEP_S))
     padded = np.concatenate([np.full(half, way.heading_rad[0]), way.heading_rad, np.full(half, way.heading_rad[-1])])
     change = padded[2 * half :] - padded[: -2 * half]
     spans: list[tuple[int, int, float]] = []

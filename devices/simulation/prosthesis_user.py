@@ -1,6 +1,5 @@
 """The demonstration's user of an above-knee prosthesis, who walks by the settings that were entered."""
 
-import threading
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
@@ -8,13 +7,14 @@ from core.alignment import NetChange
 from core.body import Side
 from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
+from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S, setting_of
-from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource, moved
-from devices.simulation.walker import PEOPLE, Standing, Walk, WalkerSettings
+from devices.simulation.replay import DEMONSTRATION_SESSION
+from devices.simulation.walker import PEOPLE, Walk, WalkerSettings
 
 
-class ProsthesisUser(ReplaySource):
-    """Standing and moving as in `demonstration`; each walk is made when it is asked for, which takes up to a second.
+class ProsthesisUser(DemonstrationPatient):
+    """Standing and moving as the demonstration's patient; each walk is made when it is asked for, up to a second.
 
     Every walk differs a little from the others, as people's do. Of the changes entered, those of these parts move
     the leg, see `walker_prosthesis`: the foot's front and back screws by angle and shift, these and the pylon by
@@ -26,6 +26,8 @@ class ProsthesisUser(ReplaySource):
         As of `ReplaySource`.
     """
 
+    course_speed_m_s = SPEED_M_S
+
     def __init__(
         self,
         side: Side,
@@ -34,14 +36,11 @@ class ProsthesisUser(ReplaySource):
         speed: float = 1.0,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
-        self._settings = replace(settings, prosthetic_side=side, variation=PEOPLE)
-        still = [one for one in settings.recordings if not isinstance(one, Walk)]
-        first = moved(replace(self._settings, recordings=tuple(still)))
-        super().__init__(first, finishes=True, speed=speed, now_ns=now_ns)
-        self._asking = threading.Lock()  # of all below
+        still = tuple(one for one in settings.recordings if not isinstance(one, Walk))
+        of_user = replace(settings, prosthetic_side=side, variation=PEOPLE, recordings=still)
+        super().__init__(of_user, speed=speed, now_ns=now_ns)
         self._walks: list[Walk] = []
         self._setting = BUILT
-        self._times_asked = 0
 
     def set_up(self, changes: Iterable[NetChange]) -> None:
         """Say by what the prosthesis differs from its first alignment; the next walk is walked so."""
@@ -50,29 +49,12 @@ class ProsthesisUser(ReplaySource):
             self._setting = setting_of(of_part)
 
     def ask(self, kind: RecordingKind | None) -> float | None:
+        if kind is not RecordingKind.WALKING:
+            return super().ask(kind)
         with self._asking:
-            self._times_asked += 1
-            if kind is RecordingKind.WALKING:
-                asked = self._times_asked
-                threading.Thread(target=self._walk, args=(asked,), name="prosthesis user", daemon=True).start()
-                return None
-        return super().ask(kind)
-
-    def _walk(self, asked: int) -> None:
-        with self._asking:
-            self._walks.append(
-                Walk(
-                    f"walk {len(self._walks) + 1}",
-                    speed_m_s=SPEED_M_S,
-                    strides=14,
-                    standing_before_s=1.0,
-                    prosthesis=self._setting,
-                )
-            )
-            walks = tuple(self._walks)  # all of them: sensors ride on the tissue as they did in the first
-        settings = replace(self._settings, recordings=(Standing(duration_s=1.0), *walks))
-        walk = moved(settings).recordings[-1]
-        with self._asking:
-            if asked == self._times_asked:  # else something else was asked meanwhile
-                self.play_next(walk)
-                super().ask(RecordingKind.WALKING)
+            name = f"walk {len(self._walks) + 1}"
+            new = Walk(name, SPEED_M_S, strides=14, standing_before_s=1.0, prosthesis=self._setting)
+            self._walks.append(new)
+            walks = tuple(self._walks)
+        self._walk(walks)  # all of them: sensors ride on the tissue as they did in the first
+        return None

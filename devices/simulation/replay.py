@@ -18,6 +18,7 @@ from devices.source import SourceInfo
 
 DRIVER, VERSION = "replay", "1"
 POLL_S = 0.015
+PATIENCE_S = 30.0  # for a movement to be finished that nobody asks for any more
 BUFFER_S = 5.0  # what a sensor or a port holds for a program that does not read; older samples are lost
 SHAKE_S, SHAKE_HZ, SHAKE_RAD_S, SHAKE_M_S2 = 2.0, 4.0, 6.0, 15.0
 SHAKEN_ALONG = np.array([0.8, 0.5, 0.3])
@@ -135,6 +136,7 @@ class ReplaySource:
         self._lock = threading.Lock()  # of all below, which is changed from any thread
         self._clips: list[_Clip] = []
         self._asked: RecordingKind | None = None  # and not begun yet
+        self._ordered: Recording | None = None  # to be played for it
         self._read_to_s = self._opened_s = 0.0
         self.is_open = self._is_away = False
         self._silenced: frozenset[str] = frozenset()
@@ -178,15 +180,25 @@ class ReplaySource:
         return True
 
     def ask(self, kind: RecordingKind | None) -> float | None:
-        """Begin with the next recording of this kind, at once or after the present one; then stand."""
+        """Begin with the next recording of this kind, at once or after the present one; then stand.
+
+        What would go on for longer than `PATIENCE_S` is broken off, whether or not the patient finishes.
+        """
+        return self._begin(kind, None)
+
+    def play(self, recording: Recording) -> None:
+        """Begin with this recording, as with one of its kind that was asked for."""
+        self._begin(recording.kind, recording)
+
+    def _begin(self, kind: RecordingKind | None, ordered: Recording | None) -> float | None:
         with self._lock:
             if not self._clips:
                 return None
             now_s = self._now_s()
             self._play_on(now_s)
-            self._asked = kind
+            self._asked, self._ordered = kind, ordered
             playing = self._clips[-1]
-            if self._finishes and not playing.is_idle:
+            if self._finishes and not playing.is_idle and playing.end_s - now_s < PATIENCE_S:
                 return None
             at_s = min(self._next_tick_s(playing.start_s, now_s), playing.end_s)
             self._clips[-1] = replace(playing, length_s=at_s - playing.start_s)
@@ -195,13 +207,8 @@ class ReplaySource:
                 return None
             return self._clips[-1].end_s - now_s if self._by_kind[kind] else 0.0
 
-    def play_next(self, recording: Recording) -> None:
-        """Play this when something of its kind is asked for next, and nothing else of its kind from now on."""
-        with self._lock:
-            self._by_kind[recording.kind] = [recording]
-
     def _next_clip(self, start_s: float) -> _Clip:
-        recording = self._next(self._asked)
+        recording, self._ordered = self._ordered or self._next(self._asked), None
         if not (self._finishes and self._asked is RecordingKind.FREE_MOTION):
             self._asked = None
         return self._clip(recording, start_s)
@@ -286,11 +293,6 @@ class ReplaySource:
         return replace(
             block, gyr_rad_s=block.gyr_rad_s + SHAKE_RAD_S * along, acc_m_s2=block.acc_m_s2 + SHAKE_M_S2 * along
         )
-
-
-def demonstration(settings: WalkerSettings = DEMONSTRATION_SESSION) -> ReplaySource:
-    """The patient that the application shows. Takes a second or two."""
-    return ReplaySource(moved(settings), finishes=True)
 
 
 def moved(settings: WalkerSettings) -> Session:

@@ -224,10 +224,84 @@ class CourseKind(StrEnum):
     STAIRS = "stairs"
 
 
+class CourseFlaw(StrEnum):
+    """By what an up and go is not the test, but for its lengths.
+
+    SIDEWAYS: sat down with hardly a turn. ONE_WAY: sat down on a chair at the cone. OTHER_CHAIR: on one on the way
+    back. TWICE: went round the cone twice. STANDING_START: stood at first. FALSE_START: rose, sat down, began again.
+    """
+
+    NONE = "none"
+    SIDEWAYS = "sideways"
+    ONE_WAY = "one way"
+    OTHER_CHAIR = "other chair"
+    TWICE = "twice"
+    STANDING_START = "standing start"
+    FALSE_START = "false start"
+
+
+@dataclass(frozen=True, slots=True)
+class UpAndGo:
+    """How an up and go is laid out and gone. Places are from the chair's front edge, in metres.
+
+    Attributes
+    ----------
+    cone_m, clearance_m
+        Where the cone is, and how far from its middle the body goes round it. A line is turned on closely.
+    overshoot_m
+        So much further the patient goes before the turn; below zero, the turn is before the cone.
+    stands_at_m
+        Where the body is when it has risen.
+    first_step_s
+        From the end of the rise to the first toe-off; below zero the patient walks off before being upright.
+    sits_after_s
+        From the last step to sitting down; below zero the patient sits down while still turning.
+    turn_s, sit_turn_s
+        At least so long the steps of the turn round the cone, and of the one before the chair, take.
+    sit_arc_m
+        How long the body's way is in the turn before the chair.
+    early
+        Of each turn, as `Bend.early`.
+    is_unwound
+        The second turn is to the other side than the first.
+    """
+
+    cone_m: float = 3.0
+    clearance_m: float = 0.35
+    overshoot_m: float = 0.0
+    stands_at_m: float = 0.15
+    first_step_s: float = 0.4
+    sits_after_s: float = 0.3
+    turn_s: float = 2.5
+    sit_turn_s: float = 2.0
+    sit_arc_m: float = 0.5
+    early: tuple[float, float] = (0.0, 0.0)
+    is_unwound: bool = True
+    flaw: CourseFlaw = CourseFlaw.NONE
+
+
+@dataclass(frozen=True, slots=True)
+class FeetInTurns:
+    """How feet are put down where the way turns.
+
+    `turned_sd_rad`: how differently they point; `late_s`: so much they lag behind the body's turn; `pivot_share`: so
+    much of a foot's turn is made on its ball, before the toes leave the floor.
+    """
+
+    turned_sd_rad: float = 0.0
+    late_s: float = 0.0
+    pivot_share: float = 0.0
+
+
+ON_THE_PATH = FeetInTurns()
+
+
 @dataclass(frozen=True, slots=True)
 class TimedCourse:
     """Everything one simulated course depends on. Within a session sensors and tissue are the session's.
 
+    `is_joined`: the patient stands at either end, and sits down first and rises last where the test is from a chair: so
+    a recording of standing can be played before it and after it.
     `silent_s`: from when to when a site's sensor sends nothing; not within a session.
     `manner_of_side`: sides that walk in another manner than the ordinary one.
     `change`, `changed_side`: what is added to joints and stance, in both legs or in one; time and length stay the
@@ -237,7 +311,7 @@ class TimedCourse:
     kind: CourseKind
     seed: int = 0
     speed_m_s: float = 1.1
-    lap_m: float = 15.0  # of the courses to and fro, from turn to turn
+    lap_m: float = 15.0  # of the courses to and fro, from cone to cone
     pauses: int = 0  # how often the patient stops on the way, in courses to and fro
     hesitates: bool = False  # before a turn the patient waits for a moment and takes shorter steps
     slowing: float = 0.0  # by what share the speed falls from the first to the last step
@@ -252,6 +326,9 @@ class TimedCourse:
     manner_of_side: Mapping[Side, Manner] = field(default_factory=dict)
     change: GaitChange = NO_CHANGE
     changed_side: Side | None = None
+    up_and_go: UpAndGo = UpAndGo()
+    feet: FeetInTurns = ON_THE_PATH
+    is_joined: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from core.body import Side
 from core.samples import FloatArray
-from devices.simulation.walker_body import NO_CHANGE, GaitChange, Leg
+from devices.simulation.walker_body import NO_CHANGE, ON_THE_PATH, FeetInTurns, GaitChange, Leg
 from devices.simulation.walker_gait import walk_leg
 from devices.simulation.walker_manners import Gait
 from devices.simulation.walker_motion import (
@@ -26,26 +26,26 @@ from devices.simulation.walker_variation import FootChanges
 SEATED_KNEE_RAD, SEATED_ANKLE_RAD = np.deg2rad(95.0), np.deg2rad(5.0)  # the thighs then lie level
 LEAN_RAD = np.deg2rad(12.0)  # so much further the shanks lean forward on the way up and down
 CLIMB_SHARE = 0.9  # of a swing, in which the foot comes to its new height: before it lands
+OFF_SHARE, REST_SHARE = 0.3, 0.4  # of a stride: what a bout has before the first toe-off, and after the last step
 NEITHER: Mapping[Side, GaitChange] = {}
 FIDGET_RAD, FIDGET_HZ = np.deg2rad(0.6), 0.4  # of the thighs on the seat
 
 
 @dataclass(frozen=True, slots=True)
 class CourseStep:
-    """One step: how far the body goes, how long the step takes, the turn it belongs to, how much higher it leads."""
+    """One step: how far the body goes, how long the step takes, how much higher it leads."""
 
     length_m: float
     time_s: float
-    turn: int | None = None
     rise_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Bout:
-    """Steps from standing to standing. `turns_rad` are the angles of the turns, positive to the left."""
+    """Steps from standing to standing, and where the way turns that they cover to the centimetre."""
 
     steps: Sequence[CourseStep]
-    turns_rad: Sequence[float]
+    bends: Sequence[Bend]
     standing_before_s: float
     standing_after_s: float
 
@@ -78,22 +78,25 @@ def plan_bout(
     first: Side,
     rng: np.random.Generator,
     change_of_side: Mapping[Side, GaitChange] = NEITHER,
+    feet: FeetInTurns = ON_THE_PATH,
 ) -> WalkPlan:
     """Plan where and when the feet stand in one bout, on a clock from 0 in steps of `step_s`."""
     gait = gaits[first]
     shares = np.tile([1.0 + 2.0 * gait.late, 1.0 + 2.0 * gaits[first.other].late], len(bout.steps))[: len(bout.steps)]
     durations = np.array([step.time_s for step in bout.steps]) * shares
     lengths = np.array([step.length_m for step in bout.steps])
-    first_off = bout.standing_before_s + 0.3 * gait.stride_s
+    first_off = bout.standing_before_s + OFF_SHARE * gait.stride_s
     contact = first_off + (1.0 - gait.stance) * gait.stride_s + np.concatenate([[0.0], np.cumsum(durations[1:])])
     at_speed, slowing = contact[0] + 0.12 * gait.stride_s, contact[-2]
     stopped = slowing + 2.0 * gait.midstance * gait.stride_s
-    duration_s = float(np.ceil((stopped + bout.standing_after_s + 0.4 * gait.stride_s) / step_s) * step_s)
+    duration_s = float(np.ceil((stopped + bout.standing_after_s + REST_SHARE * gait.stride_s) / step_s) * step_s)
     time_s = np.arange(round(duration_s / step_s) + 1) * step_s
     ramps = smooth_step((time_s - at_speed) / (0.65 * gait.stride_s) + 1.0) - smooth_step(
         (time_s - slowing) / (stopped - slowing)
     )
     hip_path = np.cumsum(np.interp(time_s, contact, lengths / durations) * ramps) * step_s
+    if bout.bends:
+        hip_path *= float(lengths.sum()) / hip_path[-1]
     ankle = np.interp(contact + gait.midstance * gait.stride_s, time_s, hip_path)
     ankle[-2:] = hip_path[-1]
     ankle[:-2] += rng.normal(0.0, 0.01 * gait.stride_m, len(ankle) - 2)
@@ -108,13 +111,20 @@ def plan_bout(
         )
         for k, side in enumerate((first, first.other))
     }
-    at_m = np.interp(contact, time_s, hip_path)
-    bends = []
-    for number, turn_rad in enumerate(bout.turns_rad):
-        members = [k for k, step in enumerate(bout.steps) if step.turn == number]
-        begin_m, end_m = at_m[max(members[0] - 1, 0)], at_m[members[-1]]
-        bends.append(Bend(0.5 * (begin_m + end_m), turn_rad, (end_m - begin_m) / 1.3))
-    return WalkPlan(gaits, duration_s, hip_path, plans, tuple(bends))
+    stood_s = contact + gait.midstance * gait.stride_s
+    turned = _heading_at(bout.bends, np.interp(stood_s - feet.late_s, time_s, hip_path))
+    turned = turned - _heading_at(bout.bends, ankle - HIP_AHEAD_OF_ANKLE_M)  # a foot points as the body does, over it
+    if feet.turned_sd_rad:
+        turned += rng.normal(0.0, feet.turned_sd_rad, len(contact))
+    plans = {
+        side: replace(plans[side], turned_rad=np.concatenate([[0.0], turned[k::2]]))
+        for k, side in enumerate((first, first.other))
+    }
+    return WalkPlan(gaits, duration_s, hip_path, plans, tuple(bout.bends), feet.pivot_share)
+
+
+def _heading_at(bends: Sequence[Bend], path_m: FloatArray) -> FloatArray:
+    return np.asarray(sum((bend.heading_at(path_m) for bend in bends), np.zeros_like(path_m)))
 
 
 def _alike(change: GaitChange, strides: int) -> FootChanges:

@@ -12,28 +12,64 @@ import numpy as np
 from core.body import Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
-from devices.simulation.walker_body import CourseKind, Leg, TimedCourse, Tissue, WalkerSettings, make_leg
-from devices.simulation.walker_bouts import Bout, CourseStep, PlannedBout, SeatChange, climb, plan_bout, sit, walk_bouts
+from devices.simulation.walker_body import (
+    CourseFlaw,
+    CourseKind,
+    FeetInTurns,
+    Leg,
+    Manner,
+    TimedCourse,
+    Tissue,
+    WalkerSettings,
+    make_leg,
+)
+from devices.simulation.walker_bouts import (
+    OFF_SHARE,
+    REST_SHARE,
+    Bout,
+    CourseStep,
+    PlannedBout,
+    SeatChange,
+    climb,
+    plan_bout,
+    sit,
+    walk_bouts,
+)
 from devices.simulation.walker_course_pelvis import course_pelvis
 from devices.simulation.walker_gait import walk_leg
 from devices.simulation.walker_manners import Gait, gaits_of
 from devices.simulation.walker_motion import Z_AXIS, LegMotion, rotation_about, smooth_step, sway_of
 from devices.simulation.walker_pelvis import PelvisMotion, pelvis_poses
 from devices.simulation.walker_plan import plan_standing
+from devices.simulation.walker_route import (
+    LEAST_STRAIGHT_M,
+    Pace,
+    Piece,
+    about,
+    before_turn,
+    bends_of,
+    draw_up_and_go,
+    shape_of,
+    steps_of,
+    straight,
+    turn,
+    up_and_go_pieces,
+)
 from devices.simulation.walker_sensors import draw_faults, draw_mounting, draw_ride, make_clock, record, sensor_poses
 
 FINE_HZ, MARGIN_S = 500.0, 0.25
 STANDING_S = 3.0
 TAPE_M = (2.0, 12.0)  # of a course of 14 m, where the 10 m begin and end
-CHAIR_TO_CONE_M = 3.0
 EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left one or reached the other
+SEATED_S, FALSE_START_S = 3.0, 0.4
+HESITATION_M = 3.0  # of the straight before a turn, in which a hesitation lies
 PAUSE_S = 1.0  # both feet on the floor for so long is a pause
 LONG_S = {"2 min": 120.0, "6 min": 360.0}
 
 
 @dataclass(frozen=True, slots=True)
 class CourseTurn:
-    """A turn of the body's way: when it begins and ends, and how far it leads, positive to the left."""
+    """A turn of the body's way: when a tenth and nine tenths of it are done, and how far, positive to the left."""
 
     start_s: float
     end_s: float
@@ -47,6 +83,8 @@ class CourseTruth:
     `time_s`, `way_m`: (n,): how far the body has come along its way, turns included.
     `left_seat_s`, `upright_s`: (r,): of each rise: the thighs have left the seat; they are as in standing.
     `climbs_m`: (k,): of each foot: how much higher each of its contacts is than the one before.
+    `parts_s`: of an up and go, from when to when each part was planned: a rise and a turn from a tenth to nine tenths
+    of the way.
     """
 
     time_s: FloatArray
@@ -58,6 +96,7 @@ class CourseTruth:
     upright_s: FloatArray
     seated_s: FloatArray  # (d,): of each sitting down: the thighs rest on the seat
     climbs_m: Mapping[Side, FloatArray] = field(default_factory=dict)
+    parts_s: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def passes_s(self, at_m: float) -> float:
         """When the body passes a place along its way, seconds."""
@@ -90,6 +129,8 @@ def draw_course(kind: CourseKind, seed: int) -> TimedCourse:
         rise_s=float(rng.uniform(0.8, 2.5)),
         tissue=Tissue.RIGID if kind in LONG_S else Tissue.SOFT,
     )
+    if kind is CourseKind.UP_AND_GO:
+        return _drawn_up_and_go(course, rng)
     if kind in LONG_S:
         course = replace(course, sites=(Site.LEFT_FOOT, Site.RIGHT_FOOT))
     if kind in LONG_S and rng.uniform() < 0.2:
@@ -97,6 +138,22 @@ def draw_course(kind: CourseKind, seed: int) -> TimedCourse:
         site = course.sites[int(rng.integers(2))]
         return replace(course, silent_s={site: (start_s, start_s + float(rng.uniform(1.0, 8.0)))})
     return course
+
+
+def _drawn_up_and_go(course: TimedCourse, rng: np.random.Generator) -> TimedCourse:
+    """As people go it: one in four shuffles, one in four has a leg that moves otherwise; feet point where they will."""
+    manner_of_side: dict[Side, Manner] = {}
+    drawn = int(rng.integers(8))
+    if drawn < 2:
+        manner_of_side = dict.fromkeys(Side, Manner.SHUFFLING)
+        course = replace(course, speed_m_s=float(rng.uniform(0.35, 0.9)))
+    elif drawn < 4:
+        other = (Manner.HEMIPARETIC, Manner.FLAT, Manner.DRAGGING)[int(rng.integers(3))]
+        manner_of_side = {list(Side)[int(rng.integers(2))]: other}
+    feet = FeetInTurns(
+        float(np.deg2rad(rng.uniform(1.0, 4.0))), float(rng.uniform(-0.05, 0.1)), float(rng.uniform(0.0, 0.5))
+    )
+    return replace(course, manner_of_side=manner_of_side, up_and_go=draw_up_and_go(rng), feet=feet)
 
 
 def simulate_course(course: TimedCourse) -> SimulatedCourse:
@@ -172,27 +229,31 @@ def walk_course(
     """Give both legs' poses, seat changes, truth and duration in s from the start; earth axes, z up, m."""
     rng = _rng(course, 8)
     start_s = round(rng.uniform(1.6, 3.0) * FINE_HZ) / FINE_HZ
-    changes: list[SeatChange] = []
-    planned: list[PlannedBout] = []
-    is_from_chair = course.kind in (CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND)
-    if is_from_chair:
-        changes.append(SeatChange(start_s, course.rise_s, is_down=False))
-        start_s = changes[-1].end_s
-    end_s = start_s
+    changes = _first_changes(course, start_s)
+    end_s = changes[-1].end_s if changes else start_s
     bouts = _bouts(course, rng)
     gaits = _gaits(course)
+    if course.kind is CourseKind.UP_AND_GO:
+        # a bout begins before its first toe-off
+        end_s += course.up_and_go.first_step_s - bouts[0].standing_before_s - OFF_SHARE * gaits[Side.LEFT].stride_s
+    planned: list[PlannedBout] = []
     of_side = {side: course.change for side in Side if course.changed_side in (None, side)}
     for bout in bouts:
         first = list(Side)[int(rng.integers(2))]
-        plan = plan_bout(bout, gaits, 1.0 / FINE_HZ, first, rng, of_side)
+        plan = plan_bout(bout, gaits, 1.0 / FINE_HZ, first, rng, of_side, course.feet)
         planned.append(PlannedBout(round(end_s * FINE_HZ) / FINE_HZ, plan))
         end_s = planned[-1].start_s + plan.duration_s
     if course.kind is CourseKind.SIT_TO_STAND:
         changes += _more_rises(course, changes[-1].end_s, rng)
         end_s = changes[-1].end_s
-    elif is_from_chair:
-        changes.append(SeatChange(end_s, course.rise_s * rng.uniform(0.9, 1.4), is_down=True))
+    elif course.kind is CourseKind.UP_AND_GO:
+        stopped_s = end_s - bouts[-1].standing_after_s - REST_SHARE * gaits[Side.LEFT].stride_s
+        down_s = stopped_s + course.up_and_go.sits_after_s
+        changes.append(SeatChange(down_s, course.rise_s * rng.uniform(0.9, 1.4), is_down=True))
         end_s = changes[-1].end_s
+        if course.is_joined:
+            changes.append(SeatChange(end_s + SEATED_S, course.rise_s, is_down=False))
+            end_s = changes[-1].end_s
     duration_s = end_s + 2.0
     time_s = _fine_clock(duration_s)
     sway_m = sway_of(time_s, rng)
@@ -209,7 +270,53 @@ def walk_course(
     motions = {side: sit(legs[side], motion, changes, phase_rad) for side, motion in motions.items()}
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     motions = {side: motion.turned(compass) for side, motion in motions.items()}
-    return motions, changes, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
+    truth = replace(_truth(motions, planned, changes), climbs_m=climbs_m)
+    if course.kind is CourseKind.UP_AND_GO:
+        truth = replace(truth, parts_s=_parts(truth.turns, changes))
+    return motions, changes, truth, duration_s
+
+
+def _first_changes(course: TimedCourse, start_s: float) -> list[SeatChange]:
+    """What comes before the first step, or, of rises alone, the first of them."""
+    if course.kind not in (CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND):
+        return []
+    changes = []
+    if course.is_joined:
+        changes.append(SeatChange(start_s, course.rise_s, is_down=True))
+        start_s = changes[-1].end_s + SEATED_S
+    flaw = course.up_and_go.flaw
+    if flaw is CourseFlaw.STANDING_START:
+        return changes
+    changes.append(SeatChange(start_s, course.rise_s, is_down=False))
+    if flaw is CourseFlaw.FALSE_START:
+        for is_down in (True, False):
+            changes.append(SeatChange(changes[-1].end_s + FALSE_START_S, course.rise_s, is_down))
+    return changes
+
+
+def _parts(turns: Sequence[CourseTurn], changes: Sequence[SeatChange]) -> dict[str, tuple[float, float]]:
+    """When each part of an up and go begins and ends, as it was planned; what it has not is left out."""
+    edges_s = {change.start_s: _edges(change) for change in changes}
+    up = [edges_s[one.start_s] for one in changes if not one.is_down and one.start_s < turns[0].start_s]
+    down = [edges_s[one.start_s] for one in changes if one.is_down and one.start_s > turns[0].end_s]
+    if not up or not down or len(turns) != 2:
+        return {}
+    out, back = turns
+    return {
+        "rise": up[-1],
+        "walk_out": (up[-1][1], out.start_s),
+        "turn": (out.start_s, out.end_s),
+        "walk_back": (out.end_s, back.start_s),
+        "turn_to_sit": (back.start_s, back.end_s),
+        "sit": down[0],
+    }
+
+
+def _edges(change: SeatChange) -> tuple[float, float]:
+    """When a tenth and nine tenths of the way are done."""
+    at = np.linspace(0.0, 1.0, 1001)
+    first, last = np.interp([EDGE_SHARE, 1.0 - EDGE_SHARE], smooth_step(at), at).tolist()
+    return change.start_s + first * change.duration_s, change.start_s + last * change.duration_s
 
 
 def _climbed(motions: Mapping[Side, LegMotion], bout: Bout) -> tuple[dict[Side, LegMotion], dict[Side, FloatArray]]:
@@ -241,70 +348,67 @@ def _bouts(course: TimedCourse, rng: np.random.Generator) -> list[Bout]:
     if course.kind is CourseKind.TEN_METRES:
         return [Bout(_straight(course, 15.0, 0.0, rng), (), 0.5, 1.5)]
     if course.kind is CourseKind.UP_AND_GO:
-        steps = [*_straight(course, CHAIR_TO_CONE_M, 0.0, rng), *_turn(course, 0, rng)]
-        steps += [
-            *_straight(course, CHAIR_TO_CONE_M, 0.5, rng),
-            *_turn(course, 1, rng),
-            *_straight(course, 0.6, 1, rng),
-        ]
-        return [Bout(steps, (_about(rng), _about(rng)), 0.5, 0.4)]
+        pieces = up_and_go_pieces(course, _pace(course), rng)
+        return [Bout(steps_of(pieces), bends_of(pieces), 0.5, 0.4)]
     return _to_and_fro(course, LONG_S[course.kind] + 6.0, rng)
 
 
 def _to_and_fro(course: TimedCourse, lasts_s: float, rng: np.random.Generator) -> list[Bout]:
-    """From turn to turn for at least `lasts_s`, with the patient's pauses."""
-    pause_s = sorted(rng.uniform(0.15, 0.85, course.pauses) * lasts_s)
+    """Round one cone, back and round the other for at least `lasts_s`, with the patient's pauses."""
+    pace, pauses_s = _pace(course), sorted((rng.uniform(0.15, 0.85, course.pauses) * lasts_s).tolist())
     bouts: list[Bout] = []
-    walked_s, to_turn_m = 0.0, course.lap_m
+    pieces: list[Piece] = []
+    walked_s = gone_m = 0.0  # so much of the next lap lies behind the patient
     while walked_s < lasts_s:
-        steps: list[CourseStep] = []
-        turns: list[float] = []
-        until_s = pause_s.pop(0) if pause_s else np.inf
-        while not steps or walked_s < min(until_s, lasts_s):
-            piece_m = min(to_turn_m, 3.0)
-            piece = _straight(course, piece_m, walked_s / lasts_s, rng)
-            to_turn_m -= sum(step.length_m for step in piece)
-            if to_turn_m < 0.5:
-                piece += _turn(course, len(turns), rng)
-                turns.append(_about(rng))
-                to_turn_m = course.lap_m
-            steps += piece
-            walked_s += sum(step.time_s for step in piece)
-        if len(steps) % 2 or steps[-1].turn is not None:  # a bout ends on the straight
-            steps += _straight(course, 1.5, walked_s / lasts_s, rng)
-        standing_s = rng.uniform(1.0, 5.0)
-        bouts.append(Bout(steps, turns, 0.5, standing_s))
-        walked_s += standing_s
+        turn_rad, clearance_m = about(rng), float(rng.uniform(0.2, 0.6))
+        shape = shape_of(turn_rad)
+        turn_m = 2.0 * clearance_m / abs(shape.end_y)
+        ahead_m = max(LEAST_STRAIGHT_M, course.lap_m + clearance_m - shape.reach * turn_m - gone_m)
+        lap_s = ahead_m / course.speed_m_s
+        while pauses_s and pauses_s[0] < walked_s + lap_s:
+            before_m = min(max(1.5, (pauses_s.pop(0) - walked_s) * course.speed_m_s), ahead_m - 1.5)
+            if before_m < 1.5:
+                continue
+            before = _stretch(pace, before_m, walked_s / lasts_s, rng)
+            standing_s = float(rng.uniform(1.0, 5.0))
+            pieces += before
+            bouts.append(Bout(steps_of(pieces), bends_of(pieces), 0.5, standing_s))
+            walked_s += sum(piece.time_s for piece in before) + standing_s
+            pieces, ahead_m = [], ahead_m - before_m
+            break
+        lap = [*_stretch(pace, ahead_m - HESITATION_M, walked_s / lasts_s, rng)] if ahead_m > 2.0 * HESITATION_M else []
+        rest_m = ahead_m - sum(piece.length_m for piece in lap)
+        lap += [*before_turn(pace, rest_m, walked_s / lasts_s, rng), turn(pace, turn_m, turn_rad, rng)]
+        gone_m = (shape.reach - shape.end_x) * turn_m - clearance_m
+        pieces += lap
+        walked_s += sum(piece.time_s for piece in lap)
+    pieces.append(straight(pace, 1.5, 1.0, rng))  # it ends on the straight
+    bouts.append(Bout(steps_of(pieces), bends_of(pieces), 0.5, float(rng.uniform(1.0, 5.0))))
     return bouts
+
+
+def _stretch(pace: Pace, length_m: float, done: float, rng: np.random.Generator) -> list[Piece]:
+    count = max(1, round(length_m / 3.0))
+    return [straight(pace, length_m / count, done, rng) for _ in range(count)]
 
 
 def _gaits(course: TimedCourse) -> Mapping[Side, Gait]:
     return gaits_of(course.speed_m_s, course.manner_of_side)
 
 
-def _usual_step(course: TimedCourse) -> tuple[float, float]:
-    """Length and time of a step on the straight, m and s."""
+def _pace(course: TimedCourse) -> Pace:
     gait = _gaits(course)[Side.LEFT]  # strides are those of both
-    return 0.5 * gait.stride_m, 0.5 * gait.stride_s
-
-
-def _about(rng: np.random.Generator) -> float:
-    """A turn about, to either side, more or less."""
-    return float(rng.choice([-1.0, 1.0]) * (np.pi + rng.normal(0.0, np.deg2rad(6.0))))
+    return Pace(0.5 * gait.stride_m, 0.5 * gait.stride_s, course.slowing, course.hesitates)
 
 
 def _straight(course: TimedCourse, way_m: float, done: float, rng: np.random.Generator) -> list[CourseStep]:
     """Steps for at least `way_m`, by a patient who has `done` a share of the test."""
     steps: list[CourseStep] = []
-    step_m, step_s = _usual_step(course)
-    factor = np.sqrt(1.0 - course.slowing * done)  # slower by shorter steps and by longer times alike
+    pace = _pace(course)
+    factor = pace.factor(done)
     while sum(step.length_m for step in steps) < way_m:
-        steps.append(
-            CourseStep(
-                step_m * factor * rng.normal(1.0, 0.03),
-                step_s / factor * rng.normal(1.0, 0.02),
-            )
-        )
+        length_m, time_s = pace.step_m * factor * rng.normal(1.0, 0.03), pace.step_s / factor * rng.normal(1.0, 0.02)
+        steps.append(CourseStep(length_m, time_s))
     return steps
 
 
@@ -323,19 +427,6 @@ def _stairs(course: TimedCourse, rng: np.random.Generator) -> list[CourseStep]:
     return steps
 
 
-def _turn(course: TimedCourse, number: int, rng: np.random.Generator) -> list[CourseStep]:
-    """Shorter steps on the turn; a patient who hesitates waits before it and takes two short steps on the straight."""
-    usual_m, step_s = _usual_step(course)
-    step_m = min(0.28, usual_m)
-    steps: list[CourseStep] = []
-    if course.hesitates:
-        steps = [CourseStep(0.6 * usual_m, step_s), CourseStep(step_m, step_s)]
-        steps.append(CourseStep(step_m, step_s + rng.uniform(0.1, 0.4)))
-    count = int(rng.integers(5, 9))
-    factors = rng.normal(1.0, [[0.05, 0.03]] * count)
-    return steps + [CourseStep(step_m * a, step_s * b, number) for a, b in factors.tolist()]
-
-
 def _truth(
     motions: Mapping[Side, LegMotion], planned: Sequence[PlannedBout], changes: Sequence[SeatChange]
 ) -> CourseTruth:
@@ -347,8 +438,8 @@ def _truth(
         way = np.where(time_s >= clock[0], np.interp(time_s, clock, path) + come_m, way)
         come_m += float(path[-1])
         for bend in bout.plan.bends:
-            share = smooth_step((path - bend.middle_m) / (1.3 * bend.arc_m) + 0.5)
-            begin, end = np.searchsorted(share, [0.05, 0.95])
+            share = bend.heading_at(path) / bend.turn_rad
+            begin, end = np.searchsorted(share, [EDGE_SHARE, 1.0 - EDGE_SHARE])
             turns.append(CourseTurn(float(clock[begin]), float(clock[end]), bend.turn_rad))
     contacts = np.sort(np.concatenate([m.events.initial_contact_s for m in motions.values()]))
     offs = np.sort(np.concatenate([m.events.toe_off_s for m in motions.values()]))

@@ -328,7 +328,7 @@ def _path(bends: tuple[Bend, ...], hip_path_m: FloatArray) -> tuple[FloatArray, 
     length = np.arange(hip_path_m.min() - 0.5, hip_path_m.max() + 0.5, 0.01)
     heading = np.zeros_like(length)
     for bend in bends:
-        heading += bend.turn_rad * smooth_step((length - bend.middle_m) / (1.3 * bend.arc_m) + 0.5)
+        heading += bend.heading_at(length)
     xy = np.cumsum(np.stack([np.cos(heading), np.sin(heading)]), axis=1) * 0.01
     return np.vstack([length, xy]), heading
 
@@ -338,7 +338,7 @@ def _footholds(leg: Leg, steps: StepPlan, path_m: FloatArray, heading: FloatArra
     yaw = np.interp(steps.ankle_m, path_m[0], heading)
     beside = 0.08 * leg.outward * np.stack([-np.sin(yaw), np.cos(yaw)], axis=-1)
     place = np.stack([np.interp(steps.ankle_m, path_m[0], axis) for axis in path_m[1:]], axis=-1) + beside
-    return place, yaw + leg.toe_out_rad
+    return place, yaw + leg.toe_out_rad + steps.turned_rad
 
 
 def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
@@ -355,6 +355,8 @@ def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
 def _pivoted(by_rad: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
     """How far (n,) the foot is ahead in its turn: by so much at each toe-off, since it has pivoted on its ball."""
     total = np.zeros_like(time_s)
+    if not by_rad.any():
+        return total
     moments = zip(by_rad, steps.heel_rise_s[:-1], steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)
     for ahead, rise, off, on in moments:
         total += ahead * (smooth_step((time_s - rise) / (off - rise)) - smooth_step((time_s - off) / (on - off)))

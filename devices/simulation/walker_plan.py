@@ -20,7 +20,8 @@ class StepPlan:
     """The stances of one foot: the first and the last are standing, so contact and toe-off are infinite at the ends.
 
     All (i,). `ankle_m` is where along the path the ankle is. `knee_deg` and `ankle_deg` are added to the peaks of
-    the swing that follows and of the toe-off that ends the stance.
+    the swing that follows and of the toe-off that ends the stance. `turned_rad` is how far the foot is turned from the
+    path, to the left, beyond its toe-out.
     """
 
     contact_s: FloatArray
@@ -30,15 +31,25 @@ class StepPlan:
     ankle_m: FloatArray
     knee_deg: FloatArray
     ankle_deg: FloatArray
+    turned_rad: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class Bend:
-    """Where the path turns: its middle along the path, how far (positive to the left), and the length of its arc."""
+    """Where the path turns: its middle along the path, how far (positive to the left), and the length of its arc.
+
+    `early`: above 0 it turns more in its first half, below 0 in its second; between -1 and 1.
+    """
 
     middle_m: float
     turn_rad: float
     arc_m: float
+    early: float = 0.0
+
+    def heading_at(self, path_m: FloatArray) -> FloatArray:
+        """How far the path has turned (n,), rad, at places along it (n,)."""
+        u = np.clip((path_m - self.middle_m) / (1.3 * self.arc_m) + 0.5, 0.0, 1.0)
+        return self.turn_rad * smooth_step(u + self.early * u * (1.0 - u))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +135,7 @@ def plan_foot(
         ankle_m=ankle_m,
         knee_deg=np.append(changes.knee_deg, 0.0),
         ankle_deg=np.append(changes.ankle_deg, 0.0),
+        turned_rad=np.zeros_like(starts),
     )
 
 

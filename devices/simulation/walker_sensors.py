@@ -18,6 +18,7 @@ SEGMENT_ROW = {Segment.THIGH: 0, Segment.SHANK: 1, Segment.FOOT: 2}
 TISSUE_SHARE = {Segment.THIGH: 1.0, Segment.SHANK: 0.6, Segment.FOOT: 0.25}
 TISSUE_RAD, TISSUE_M = np.deg2rad(2.0), 0.005
 RING_HZ, RING_DECAY_S = 9.0, 0.08
+FADED_DECAYS = 40.0  # after so many a ring is below the rounding of what it is added to
 # Real tissue: in walking the relative rate off the axis is then 0.5-0.9 rad/s (1.48 MAD) and about 0.6 (rms) above 3 Hz
 REAL_RIDE = 1.8  # how much more than soft tissue it follows the flexion
 # and how far it shifts for its turning: below 4 Hz two sensors on a person's knee disagree about the joint's force by 8
@@ -172,9 +173,10 @@ def ring_after(t: FloatArray, hits_s: FloatArray, sizes: FloatArray, ring_hz: fl
     """A decaying oscillation (n,) after each hit, that begins smoothly."""
     ring = np.zeros_like(t)
     for hit_s, size in zip(hits_s, sizes, strict=True):
-        since = np.maximum(t - hit_s, 0.0)
+        here = slice(*np.searchsorted(t, [hit_s, hit_s + FADED_DECAYS * decay_s]))
+        since = t[here] - hit_s
         start = (1.0 - np.exp(-since / 0.015)) ** 3
-        ring += size * (start * np.exp(-since / decay_s) * np.sin(2.0 * np.pi * ring_hz * since))
+        ring[here] += size * (start * np.exp(-since / decay_s) * np.sin(2.0 * np.pi * ring_hz * since))
     return ring
 
 

@@ -99,14 +99,15 @@ def _source(rate_hz: float, seconds: float) -> "SourceChoice":
     from app.acquisition.acquisition import Acquisition
     from app.wizard.sensors.sources import DEMONSTRATION
     from app.wizard.worn_sensors import SourceChoice
-    from devices.simulation.replay import DEMONSTRATION_SESSION, demonstration
+    from devices.simulation.demonstration_patient import DemonstrationPatient
+    from devices.simulation.replay import DEMONSTRATION_SESSION
     from devices.simulation.walker import Walk
 
     walk = Walk(strides=round((seconds + 10.0) / STRIDE_S), standing_before_s=2.0)
     recordings = (*(one for one in DEMONSTRATION_SESSION.recordings if not isinstance(one, Walk)), walk)
     settings = replace(DEMONSTRATION_SESSION, rate_hz=rate_hz, recordings=recordings)
     return SourceChoice(
-        DEMONSTRATION, "Simulated patient", lambda: Acquisition([demonstration(settings)]), is_simulated=True
+        DEMONSTRATION, "Simulated patient", lambda: Acquisition([DemonstrationPatient(settings)]), is_simulated=True
     )
 
 

@@ -48,7 +48,7 @@ MANUAL = {  # which stop of a tour becomes which picture
         "27-home-again": "home",
     },
     "bench": {"34-b-against-a": "bench"},
-    "timed": {"53-running": "timed-test"},
+    "timed": {"51c-running": "timed-test", "53d-over": "timed-result"},
 }
 PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool", "convert": "imagemagick"}  # Debian's packages
 SCREEN = "2000x1200x24"

@@ -21,7 +21,7 @@ from core.timed.seat import seat_motions
 from core.verdicts.walk_findings import about_turns
 from devices.simulation.walker_body import CourseKind, Tissue
 from devices.simulation.walker_courses import CourseTruth, draw_course, simulate_course
-from tests.validation.timed_courses import tracks_of
+from tests.validation.timed_validity import tracks_of
 
 PITCHING_RAD_S, UPRIGHT_RAD = np.deg2rad(10.0), np.deg2rad(15.0)
 KINDS = (CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND)

@@ -1,25 +1,24 @@
-"""Accuracy of reported timed tests, on 220 simulated courses and on people's recordings.
+"""Accuracy of reported timed tests, on 370 simulated courses and on people's recordings.
 
     python -m tests.validation.timed_courses [--scale 1.0]
 
-Courses: distance, time, turns, laps, pauses and rises against the truth, one line per test, every miss beside its seed.
-Nothing ties the ends of a 10 m walk to a tape unless keys are pressed: it is timed both ways. The recordings are used
-where GAITWRIGHT_TEST_DATA names the shared folder: a person who walks and turns beside optics, people after a stroke on
-a treadmill, who neither start nor turn.
+Courses: distance, time, turns, laps, pauses and rises against the truth, one line per test, every miss beside its seed;
+of an up and go each part, and the share of courses that are no such test and are flagged. Nothing ties the ends of a
+10 m walk to a tape unless keys are pressed: it is timed both ways. The recordings are used where GAITWRIGHT_TEST_DATA
+names the shared folder: a person who walks and turns beside optics, people after a stroke on a treadmill, who neither
+start nor turn.
 """
 
 import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from core.body import Side
-from core.samples import RateKind
-from core.session import Recording, Session
-from core.signal.sensors import SensorTracks
 from core.timed.found import TimedTest
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.timed.timing import time_test
@@ -30,17 +29,21 @@ from devices.simulation.walker_courses import TAPE_M, CourseTruth, draw_course, 
 from tests.benchmarks.gait import optical_foot
 from tests.driver import options
 from tests.validation.recordings_with_references import feet
+from tests.validation.timed_validity import Flags, LapScore, reported_laps, reported_validity, tracks_of
 
 COURSES = {
     CourseKind.TEN_METRES: 60,
     CourseKind.TWO_MINUTES: 40,
     CourseKind.SIX_MINUTES: 10,
-    CourseKind.UP_AND_GO: 50,
+    CourseKind.UP_AND_GO: 200,
     CourseKind.SIT_TO_STAND: 40,
     CourseKind.STAIRS: 20,
 }
 LASTS_S = {CourseKind.TWO_MINUTES: 120.0, CourseKind.SIX_MINUTES: 360.0}
+WRONG_SEEDS = 20  # patients who walk every kind of course that is not the test
+MAX_PART_S = 0.15
 MAX_DISTANCE_PERCENT, MAX_TIME_S, MAX_PAUSE_S = 2.0, 0.1, 0.1
+MAX_TIGHT_PERCENT = 6.0  # of an up and go, half of which may be turns on the spot
 
 
 @dataclass(slots=True)
@@ -60,6 +63,9 @@ class Score:
     level: int = 0
     climb_m: list[float] = field(default_factory=list)
     silent: int = 0
+    parts_s: dict[str, list[float]] = field(default_factory=dict)
+    valid: Flags = field(default_factory=Flags)
+    laps: LapScore = field(default_factory=LapScore)
     wrong: list[str] = field(default_factory=list)
 
     def add(self, seed: int, found: TimedTest, truth: CourseTruth, kind: CourseKind, *, is_silent: bool) -> None:
@@ -77,9 +83,13 @@ class Score:
             way_m = truth.way_at(found.end_s) - truth.way_at(found.start_s)
         if has_distance:
             self.distance_percent.append(100.0 * (found.distance_m / way_m - 1.0))
-            if abs(self.distance_percent[-1]) > MAX_DISTANCE_PERCENT:
+            most = MAX_TIGHT_PERCENT if kind is CourseKind.UP_AND_GO else MAX_DISTANCE_PERCENT
+            if abs(self.distance_percent[-1]) > most:
                 self.wrong.append(f"{seed}: distance {self.distance_percent[-1]:+.1f} %")
         self._add_events(seed, found, truth, start_s, end_s)
+        for part in found.parts:
+            begin_s, over_s = truth.parts_s[part.part]
+            self.parts_s.setdefault(part.part, []).append(part.time_s - (over_s - begin_s))
 
     def _add_events(self, seed: int, found: TimedTest, truth: CourseTruth, start_s: float, end_s: float) -> None:
         turns = [turn for turn in truth.turns if start_s <= 0.5 * (turn.start_s + turn.end_s) <= end_s]
@@ -133,10 +143,6 @@ def true_span(kind: CourseKind, truth: CourseTruth) -> tuple[float, float]:
     return float(truth.contacts_s[0]), float(truth.contacts_s[0]) + LASTS_S[kind]
 
 
-def tracks_of(session: Session) -> tuple[SensorTracks, Recording]:
-    return SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS), session.recordings[-1]
-
-
 def score(kind: CourseKind, seeds: range) -> Score:
     """Time every course of one kind."""
     total = Score()
@@ -146,6 +152,10 @@ def score(kind: CourseKind, seeds: range) -> Score:
         tracks, recording = tracks_of(made.session)
         found = time_test(tracks, recording, PlannedTest(TimedProtocol(kind.value)))
         total.add(seed, found, made.truth, kind, is_silent=bool(course.silent_s))
+        if kind in LASTS_S:
+            total.laps.add(seed, course, made.session, made.truth, kind)
+        if kind is CourseKind.UP_AND_GO:
+            total.valid.add(f"{seed}", found, should_be=False)
         if kind is CourseKind.TEN_METRES:
             by_key = time_test(tracks, recording, PlannedTest(TimedProtocol(kind.value), *true_span(kind, made.truth)))
             total.tape_percent.append(100.0 * by_key.tape_difference_m / by_key.distance_m)
@@ -172,6 +182,11 @@ def reported(kind: CourseKind, total: Score) -> Iterator[str]:
     if total.stairs:
         yield f"  {total.stairs} strides on stairs and {total.level} level ones, height {spread(total.climb_m, 'm', 3)}"
     yield f"  {total.pauses} pauses, length {spread(total.pause_s, 's', 3)}; {total.rises} rises"
+    for part, errors in total.parts_s.items():
+        within = 100.0 * np.mean(np.abs(errors) <= MAX_PART_S)
+        yield f"  {part}: {spread(errors, 's', 3)}; within {MAX_PART_S} s {within:.1f} %"
+    if kind in LASTS_S:
+        yield from reported_laps(total.laps)
     yield f"  missed: {'; '.join(total.wrong) or 'nothing'}"
 
 
@@ -200,10 +215,16 @@ def recordings(data: Path) -> Iterator[str]:
 
 
 def main() -> None:
-    required = options(__doc__, first=(0, "the first seed"), scale=(1.0, "share of the 220 courses"))
+    required = options(__doc__, first=(0, "the first seed"), scale=(1.0, "share of the 370 courses"))
     scale, first = required.scale, required.first
     for kind, count in COURSES.items():
-        for line in reported(kind, score(kind, range(first, first + max(1, round(scale * count))))):
+        total = score(kind, range(first, first + max(1, round(scale * count))))
+        lines = reported(kind, total)
+        if kind is CourseKind.UP_AND_GO:
+            lines = chain(
+                lines, reported_validity(total.valid, range(first, first + max(1, round(scale * WRONG_SEEDS))))
+            )
+        for line in lines:
             print(line, flush=True)
     data = os.environ.get("GAITWRIGHT_TEST_DATA")
     for line in recordings(Path(data)) if data else ():

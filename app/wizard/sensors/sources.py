@@ -25,8 +25,9 @@ from devices.dot.source import DotSource
 from devices.drivers.lsl import GROUP, PORT
 from devices.live import SourceRefusedError
 from devices.search import search, search_streams
+from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.prosthesis_user import ProsthesisUser
-from devices.simulation.replay import DEMONSTRATION_SESSION, DEMONSTRATION_WITH_PELVIS, demonstration
+from devices.simulation.replay import DEMONSTRATION_SESSION, DEMONSTRATION_WITH_PELVIS
 from devices.transport.bluetooth import BluetoothMissingError, own_radio
 from devices.transport.networks import THIS_COMPUTER, own_addresses
 
@@ -172,7 +173,7 @@ def _remedy(deaf: SourceRefusedError | None) -> str:
 
 
 def _demonstration(settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:
-    return Acquisition([demonstration(settings)])
+    return Acquisition([DemonstrationPatient(settings)])
 
 
 def _prosthesis_user(side: Side, settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:

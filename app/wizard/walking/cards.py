@@ -11,14 +11,17 @@ from app.theme.current import on_theme, px, scaled
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
+from app.widgets.key_cap import KeyCap
 from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.charts import Hairline
 from app.wizard.walking.label_chooser import LabelChooser
-from app.wizard.walking.timed_chooser import TimedChooser
+from app.wizard.walking.timed_chooser import CourseField, TimedChooser
 from app.wizard.walking.walk_list import WalkRow, WalkState
+from app.wording.timed_tests import instruction, name_of_test
 from app.wording.translation import tr, tr_n
 from core.body import Side
+from core.timed.protocols import PlannedTest
 
 FIGURE = 60
 UNDER_FIGURES = 0.14  # of their size lies below the line that the unit shares
@@ -127,23 +130,28 @@ class StoppedCard(Card):
 
 
 class EmptyCard(Card):
-    """Before the first walk: what to do, and why to stand a moment."""
+    """Before the first walk: what to do, and why to stand a moment; of a timed test how it is done."""
 
     accessible_role = QAccessible.Role.Note
 
     def __init__(self) -> None:
         super().__init__()
-        self._what = Text(tr("Choose a condition, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
-        self._then = Text(
-            tr("Stand still for two seconds first: ankle angles are then correct from the start."),
-            size=16,
-            tone="ink2",
-            wraps=True,
-        )
-        self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
+        self._what = Text(size=26, weight=SEMIBOLD, wraps=True)
+        self._then = Text(size=16, tone="ink2", wraps=True)
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
         lay_out(self.column, 1, self._what, self._then, 1)
+        self.show_test(None)
+
+    def show_test(self, planned: PlannedTest | None) -> None:
+        what = tr("Choose a condition, then press Space.")
+        then = tr("Stand still for two seconds first: ankle angles are then correct from the start.")
+        if planned is not None:
+            what = tr("{test}: press Space.").format(test=name_of_test(planned.protocol))
+            then = instruction(planned)
+        self._what.setText(what)
+        self._then.setText(then)
+        self.setAccessibleName(f"{what} {then}")
 
 
 class NextCard(Card):
@@ -153,12 +161,19 @@ class NextCard(Card):
         super().__init__()
         self._title = Text(size=14, weight=MEDIUM, tone="ink2")
         self.chooser = LabelChooser()
+        self.course = CourseField()
         self.test = TimedChooser()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        lay_out(self.column, lay_out(QHBoxLayout(), (self._title, 1), self.test), self.chooser)
+        test = lay_out(QHBoxLayout(), self.test, KeyCap("T"), spacing=8)
+        lay_out(self.column, lay_out(QHBoxLayout(), (self._title, 1), self.course, test, spacing=16), self.chooser)
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()
 
     def name(self, letter: str) -> None:
         self._title.setText(tr("Next condition: {letter}").format(letter=letter) if letter else tr("Next condition"))
+
+    def show_test(self, planned: PlannedTest | None) -> None:
+        """Show which test the next walk is, and how long its course is."""
+        self.test.show_choice(None if planned is None else planned.protocol)
+        self.course.show_course(planned)

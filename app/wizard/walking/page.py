@@ -35,7 +35,7 @@ from app.wizard.walking.timed_view import TimedView, TimedViewState
 from app.wizard.walking.walk_list import WalkList, WalkRow, WalkState
 from app.wording.recordings import LETTERS
 from app.wording.translation import tr
-from core.timed.protocols import TimedProtocol
+from core.timed.protocols import PlannedTest, TimedProtocol
 
 MARGIN, BETWEEN = 24, 12
 MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
@@ -104,7 +104,9 @@ class WalkingPage(QWidget):
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test]
+        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit]
+        controls += [field.line_edit for field in self.timed_result.entry.fields]
+        controls += [self.next.course.field.line_edit, self.next.test]
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:
@@ -167,15 +169,22 @@ class WalkingPage(QWidget):
                 self.timed.setFocus()
 
     def show_tests(
-        self, protocol: TimedProtocol | None, state: TimedResult | None, before: Mapping[TimedProtocol, str]
+        self, planned: PlannedTest | None, state: TimedResult | None, before: Mapping[TimedProtocol, str]
     ) -> None:
         """Show the next test and the latest result in place of curves; `before`: results of an earlier visit."""
+        self.empty.show_test(planned)
+        self.next.show_test(planned)
         self.next.test.show_before(before)
-        self.next.test.show_choice(protocol)
         self._has_result = state is not None
         if state is not None:
             self.timed_result.show_state(state)
         self._arrange()
+
+    def enter_course(self) -> bool:
+        """Lead to the length of the test's course; False where the test has none."""
+        if self.next.course.isVisible():
+            self.next.course.take_focus()
+        return self.next.course.isVisible()
 
     def show_memory(self, shown: ProgressShown | None) -> None:
         """Show what is done with the sensors' memories in the place of the curves; None: they stand there."""
@@ -257,6 +266,7 @@ class WalkingPage(QWidget):
         self.next.chooser.chosen.connect(self._on_chosen)
         self.stopped.keep.clicked.connect(self._on_keep_clicked)
         self.stopped.discard.clicked.connect(self._on_discard_clicked)
+        self.next.course.left.connect(self.focus)
         self.tabs.chosen.connect(self._arrange)
 
     def _arrange(self) -> None:

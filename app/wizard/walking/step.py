@@ -83,6 +83,8 @@ class WalkingStep(Step):
             page.bench.alignments.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
+            page.next.course.entered.connect(self._on_course_entered)
+            page.timed_result.course_entered.connect(self._on_recorded_course_entered)
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
             page.walks.undo_pressed.connect(self._on_keep_pressed)
@@ -140,7 +142,8 @@ class WalkingStep(Step):
 
     @property
     def folds_sensors(self) -> bool:
-        return self._timed.is_running or (self.bench.is_shown and not self._visit.recordings.is_recording)
+        is_bench = self.bench.is_shown and not self._visit.recordings.is_recording
+        return self._timed.is_running or self._timed.has_result or is_bench
 
     @property
     def takes_clicker(self) -> bool:
@@ -229,6 +232,8 @@ class WalkingStep(Step):
                 self.run()
             case KeyAction.NEXT_TEST if not self._visit.recordings.is_recording:
                 self._timed.choose_next()
+            case KeyAction.COURSE if not self._visit.recordings.is_recording and self.page.next.isVisible():
+                self.page.enter_course()
             case KeyAction.LEAVE if self._timed.is_running:
                 self.stop()
             case KeyAction.KEEP | KeyAction.IDENTIFY if self._asked is not None:
@@ -247,6 +252,8 @@ class WalkingStep(Step):
                 feedback.toggle_full_screen()
             case KeyAction.LEAVE if feedback is not None and feedback.is_open:
                 feedback.close()
+            case KeyAction.LEAVE if self._timed.planned is not None and not self._visit.recordings.is_recording:
+                self._timed.choose(None)
             case _:
                 return False
         return True
@@ -286,9 +293,13 @@ class WalkingStep(Step):
         if self.bench.is_shown:
             label, alignment = self.bench.next_walk()
             acquisition.set_up(self.bench.chain.set_so(label, alignment))
-        acquisition.ask(RecordingKind.WALKING)
+        planned = self._timed.planned
+        if planned is None:
+            acquisition.ask(RecordingKind.WALKING)
+        else:
+            acquisition.ask_test(planned)
         self.memory.fetch.begun()
-        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, self._timed.planned)
+        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, planned)
         if (walk := self._ongoing) is not None:
             self._preview.begin_walk(walk.began_s)
             self._timed.begin(walk.began_s)
@@ -389,7 +400,7 @@ class WalkingStep(Step):
         self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self.bench.state() if self.bench.is_shown and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), name_in_words(self._label))
-        self._page.show_tests(self._timed.protocol, self._timed.result(), self._timed.before(self._label))
+        self._page.show_tests(self._timed.planned, self._timed.result(), self._timed.before(self._label))
         self._page.show_memory(self.memory.shown)
         self.changed.emit()
 
@@ -429,6 +440,18 @@ class WalkingStep(Step):
         label = self._label = stored_label(label, self._used)
         self.page.next.test.show_before(self._timed.before(label))
         self.changed.emit()
+
+    @Slot()
+    def _on_course_entered(self) -> None:
+        field = self.page.next.course
+        self._timed.is_course_wrong = field.is_wrong
+        self._timed.enter_course(field.value)
+        self.changed.emit()
+
+    @Slot()
+    def _on_recorded_course_entered(self) -> None:
+        if (planned := self.page.timed_result.entry.planned) is not None:
+            self._timed.correct(planned)
 
     @Slot()
     def _on_change_reported(self) -> None:

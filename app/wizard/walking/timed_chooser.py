@@ -1,15 +1,25 @@
-"""Chooser of the timed test that the next walk is, if it is one."""
+"""Chooser of the timed test that the next walk is, if it is one, and the length of its course."""
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
+from app.theme.current import scaled
 from app.widgets.choice import Choice
-from app.wording.timed_tests import name_of_test
-from app.wording.translation import tr
-from core.timed.protocols import TimedProtocol
+from app.widgets.field import NumberField
+from app.widgets.key_cap import KeyCap
+from app.widgets.lay_out import lay_out
+from app.widgets.text import Text
+from app.wording.timed_tests import course_label, name_of_test
+from app.wording.translation import tr, within_sentence
+from core.timed.protocols import PlannedTest, TimedProtocol, course_of
 
 LEAST, MOST = 120, 340  # px of the box
+SHORTEST_M, LONGEST_M = 1.0, 200.0
+FIELD_WIDTH = 104
+LEAVING = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Escape)
 
 
 class TimedChooser(Choice):
@@ -19,7 +29,7 @@ class TimedChooser(Choice):
 
     def __init__(self) -> None:
         super().__init__(tr("Timed test"))
-        self.addItem(tr("No timed test (T)"), "")
+        self.addItem(tr("No timed test"), "")
         for protocol in TimedProtocol:
             self.addItem(name_of_test(protocol), str(protocol))
         self.let_shrink(LEAST, MOST)
@@ -37,3 +47,59 @@ class TimedChooser(Choice):
 
     def _on_activated(self, _index: int) -> None:
         self.chosen.emit(self.currentData())
+
+
+class CourseField(QWidget):
+    """How long the course of the chosen test is; C leads to it, Enter and Esc lead out again, Space starts the test.
+
+    `entered`: with every change; what the field holds then is in `value` and `is_wrong`. `left`: by a key.
+    """
+
+    entered = Signal()
+    left = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._caption = Text(tone="ink2")
+        self.field = NumberField(
+            "", low=SHORTEST_M, high=LONGEST_M, decimals=2, unit="m", has_label=False, states_wrong=False
+        )
+        self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Fixed)
+        scaled(self.field.setFixedWidth, FIELD_WIDTH)
+        lay_out(QHBoxLayout(self), self._caption, self.field, KeyCap("C"), margins=0, spacing=8)
+        self.field.edited.connect(self.entered)
+        self.field.committed.connect(self.entered)
+        self.field.line_edit.installEventFilter(self)
+
+    @property
+    def value(self) -> float | None:
+        return self.field.value
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether something was typed that is no length of a course."""
+        return bool(self.field.text.strip()) and self.field.value is None
+
+    def show_course(self, planned: PlannedTest | None) -> None:
+        """Show the length for a test that has a course, and nothing for others."""
+        label = "" if planned is None else course_label(planned.protocol)
+        self.setVisible(bool(label))
+        self._caption.setText(label)
+        self.field.set_label(tr("Next test, {length}").format(length=within_sentence(label)))  # not the one before
+        if planned is not None and not self.field.line_edit.hasFocus():
+            self.field.set_value(course_of(planned))
+
+    def take_focus(self) -> None:
+        self.field.line_edit.setFocus(Qt.FocusReason.ShortcutFocusReason)
+        self.field.line_edit.selectAll()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Let Enter and Esc leave the field: Enter is the primary button's elsewhere, Esc the window's."""
+        if isinstance(event, QKeyEvent) and event.key() in LEAVING and not event.modifiers():
+            if event.type() is QEvent.Type.ShortcutOverride:
+                event.accept()
+                return True
+            if event.type() is QEvent.Type.KeyPress:
+                self.left.emit()
+                return True
+        return super().eventFilter(watched, event)

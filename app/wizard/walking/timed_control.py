@@ -1,6 +1,7 @@
 """What joins timed tests to the visit: which test comes next, its clock, and what a key means while it runs."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
@@ -8,6 +9,7 @@ from PySide6.QtCore import QObject, Signal, Slot
 from app.storage.journal.payloads import key_text
 from app.summary.course_lanes import LaneKind, lanes
 from app.summary.numbers_in_words import fixed
+from app.summary.timed_words import populations_of, published_sentence
 from app.system import sounds
 from app.system.sounds import Sound
 from app.wizard.evaluation import failure_in_words
@@ -23,7 +25,7 @@ from core.body import Segment
 from core.timed.found import TimedTest
 from core.timed.live import RUN_OUT_S, LiveReadout, LiveTest
 from core.timed.measures import COLUMNS
-from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
+from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol, with_course
 
 if TYPE_CHECKING:
     from app.editing.session_recording import SessionRecording
@@ -44,6 +46,8 @@ class TimedControl(QObject):
         self.earlier = EarlierTests(visit, self)
         self.earlier.changed.connect(self.changed)
         self.protocol: TimedProtocol | None = None
+        self._courses_m: dict[TimedProtocol, float | None] = {}  # as entered
+        self.is_course_wrong = False  # what was typed is no length
         self._estimator: WalkingEstimator | None = None
         self._live: LiveTest | None = None
         self._has_begun = self._is_over = False
@@ -53,7 +57,9 @@ class TimedControl(QObject):
     @property
     def planned(self) -> PlannedTest | None:
         """What the next walk is, as its recording names it."""
-        return None if self.protocol is None else PlannedTest(self.protocol)
+        if self.protocol is None:
+            return None
+        return with_course(PlannedTest(self.protocol), self._courses_m.get(self.protocol))
 
     @property
     def is_running(self) -> bool:
@@ -71,7 +77,7 @@ class TimedControl(QObject):
 
     def choose(self, protocol: TimedProtocol | None) -> None:
         if protocol is not self.protocol:
-            self.protocol = protocol
+            self.protocol, self.is_course_wrong = protocol, False
             self.changed.emit()
 
     def choose_next(self) -> None:
@@ -79,12 +85,18 @@ class TimedControl(QObject):
         every: list[TimedProtocol | None] = [None, *TimedProtocol]
         self.choose(every[(every.index(self.protocol) + 1) % len(every)])
 
+    def enter_course(self, length_m: float | None) -> None:
+        """Take the length of the course of the chosen test, as long as it is laid out so."""
+        if self.protocol is not None and length_m != self._courses_m.get(self.protocol):
+            self._courses_m[self.protocol] = length_m
+            self.changed.emit()
+
     def begin(self, began_s: float) -> None:
         """The recording of the test that was chosen begins, if one was."""
         self._live = None
         self._has_begun = self._is_over = False
         self._pressed_end_s = math.nan
-        if self.protocol is None:
+        if (planned := self.planned) is None:
             return
         visit, worn = self._visit, self._visit.sensors.site_of
         upright = {
@@ -93,7 +105,7 @@ class TimedControl(QObject):
             if site.segment is Segment.THIGH and name in visit.rests
         }
         feet = frozenset(site.side for site in worn.values() if site.segment is Segment.FOOT and site.side is not None)
-        self._live = LiveTest(self.protocol, upright, visit.prosthetic_sides, feet, began_s)
+        self._live = LiveTest(planned, upright, visit.prosthetic_sides, feet, began_s)
         self.watch(self._estimator)
 
     @Slot(object)
@@ -175,8 +187,20 @@ class TimedControl(QObject):
             same,
             [str(names[one.name]) for one in same],
             *self._course(every[-1].protocol),
+            published=published_sentence(every[-1].protocol, populations_of(self._visit.patient.details)),
             failure=failure_in_words() if self._visit.evaluation.has_failed else None,
         )
+
+    def correct(self, planned: PlannedTest) -> None:
+        """Take what was entered of the latest test after it."""
+        walk = self._visit.recordings.walks[-1]
+        self._visit.recordings.change(walk, lambda reported: replace(reported, test=planned))
+
+    @property
+    def has_result(self) -> bool:
+        """Whether the latest walk was a test, and none is recorded."""
+        recordings = self._visit.recordings
+        return bool(recordings.walks) and not recordings.is_recording and recordings.walks[-1].details.test is not None
 
     def _course(self, protocol: TimedProtocol) -> "tuple[tuple[CourseVisit, ...], CourseLane | None]":
         """The visits, and over them what a test is made for, under the condition of the latest walk."""
@@ -208,7 +232,7 @@ class TimedControl(QObject):
     def attempts(self) -> tuple[TimedAttempt, ...]:
         """Every test of this session in the order of recording."""
         return tuple(
-            TimedAttempt(one.details.name, one.details.test.protocol, self._found(one), one.details.is_kept)
+            TimedAttempt(one.details.name, one.details.test, self._found(one), one.details.is_kept)
             for one in self._visit.recordings.walks
             if one.details.test is not None
         )

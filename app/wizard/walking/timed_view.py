@@ -21,17 +21,16 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.body import name_of
 from app.wording.numbers import clock
 from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
-from app.wording.translation import capitalised, figure_text, joined, tr
+from app.wording.translation import capitalised, figure_text, joined, short_figure, tr
 from core.body import Side
 from core.timed.live import LiveReadout
-from core.timed.protocols import DEFINITIONS, TimedProtocol
+from core.timed.protocols import DEFINITIONS, TimedProtocol, course_of
 
 TIME, DISTANCE = 240, 160
 NO_FIGURE = "\N{EN DASH}"
 RUN_IN_M, RUN_OUT_M = 2.0, 2.0
 SHOWN_STEPS = 24
 BEFORE_STATUS, BEHIND_STATUS = 42, 18  # its dot, and the room round it
-UP_AND_GO_M = 6.0  # there and back
 LONG_S = 100.0  # more digits with a tenth than there is room for
 
 
@@ -123,7 +122,7 @@ class TimedView(QWidget):
         self.course.show_state(state)
         words = (
             (tr("Automatic start"), start_words(protocol)),
-            (tr("Automatic end"), end_words(protocol)),
+            (tr("Automatic end"), end_words(state.readout.planned)),
             (tr("Tones mark start and end"), tr("rising, then falling")),
         )
         for tile, (first, then) in zip(self._tiles, words, strict=True):
@@ -233,7 +232,7 @@ class _Course(Painted):
         whole = QRectF(px(4), px(36), self.width() - px(8), px(48))
         if DEFINITIONS[state.protocol].tape_m is None:
             return whole, whole
-        per_m = whole.width() / (RUN_IN_M + (DEFINITIONS[state.protocol].length_m or 1.0) + RUN_OUT_M)
+        per_m = whole.width() / (RUN_IN_M + (_length_m(state) or 1.0) + RUN_OUT_M)
         return whole, whole.adjusted(per_m * RUN_IN_M, 0, -per_m * RUN_OUT_M, 0)
 
     def draw(self, painter: QPainter) -> None:
@@ -277,7 +276,7 @@ class _Course(Painted):
                 PaintedText(tr("run-out"), top, theme.font(15), "ink2", RIGHT),
             ]
         steps = state.readout.steps[-SHOWN_STEPS:]
-        total_m = DEFINITIONS[state.protocol].length_m  # None where the course has none
+        total_m = _length_m(state)
         for number, (side, at_m) in enumerate(steps):
             share = at_m / total_m if total_m else (number + 0.5) / SHOWN_STEPS
             if share <= 1.0:
@@ -285,6 +284,11 @@ class _Course(Painted):
                 tone = "left_text" if side is Side.LEFT else "right_text"
                 found.append(PaintedText(side.letter, box, theme.font(17, SEMIBOLD), tone, CENTRE))
         return found
+
+
+def _length_m(state: TimedViewState) -> float | None:
+    """Between the tapes; None of a test without them."""
+    return None if DEFINITIONS[state.protocol].tape_m is None else course_of(state.readout.planned)
 
 
 def _share(state: TimedViewState) -> float:
@@ -299,7 +303,7 @@ def _share(state: TimedViewState) -> float:
     if definition.rises > 1:
         return min(1.0, _rises(state) / definition.rises)
     metres = found.distance_m if math.isfinite(found.distance_m) else 0.0
-    required_m = definition.length_m or (UP_AND_GO_M if definition.rises else 0.0)
+    required_m = _length_m(state) or (2.0 * (course_of(found.planned) or 0.0) if definition.rises else 0.0)
     return min(0.99, metres / required_m) if required_m else 0.0
 
 
@@ -311,12 +315,13 @@ def _rises(state: TimedViewState) -> int:
 def _middle_words(state: TimedViewState) -> str:
     """What the bar measures, and laps as they come."""
     definition, turns = DEFINITIONS[state.protocol], state.readout.turns
-    if definition.length_m is not None:
-        return tr("{length:.0f} m timed").format(length=definition.length_m)
+    if (length_m := _length_m(state)) is not None:
+        return tr("{length} m timed").format(length=short_figure(length_m, 2))
     if definition.rises > 1:
         return tr("{count} of {required} rises").format(count=_rises(state), required=definition.rises)
     if definition.rises:
-        return tr("3 m, turn, 3 m back") if not turns else tr("turned")
+        course = short_figure(course_of(state.readout.planned) or 0.0, 2)
+        return tr("{course} m, turn, {course} m back").format(course=course) if not turns else tr("turned")
     laps = tr("Lap {lap}").format(lap=turns + 1)
     if definition.duration_s is None:
         return laps

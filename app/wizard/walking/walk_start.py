@@ -42,4 +42,6 @@ class WalkStart:
         missing = self.missing or self._memory.cannot_start
         if not missing and self._visit.sensors.are_in_memory and self._timed.planned is not None:
             return tr("Timed tests need live data. Choose no test, or record walks live.")
+        if not missing and self._timed.is_course_wrong:
+            return tr("Enter the length of the course in metres, 1 to 200.")
         return missing

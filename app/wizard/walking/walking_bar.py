@@ -16,7 +16,7 @@ from app.wizard.walking.walk_rows import ongoing_walk
 from app.wizard.walking.walk_start import WalkStart
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import capitalised, tr, within_sentence
-from core.timed.protocols import DEFINITIONS
+from core.timed.protocols import DEFINITIONS, course_of
 
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing
@@ -114,7 +114,7 @@ class WalkingBar:
         elif definition.length_m is not None:
             verb = tr("End at the tape")
             stated = tr("Press Space at the end of the tape. The distance then counts as {length:.2f} m.")
-            note = stated.format(length=definition.length_m)
+            note = stated.format(length=course_of(readout.planned))
         else:
             verb, note = (
                 tr("End the test"),
@@ -182,8 +182,8 @@ class WalkingBar:
         return "" if test is None else tr("Start {test}").format(test=within_sentence(name_of_test(test.protocol)))
 
     def _armed(self, label: str) -> str:
-        """What the next walk is, where it is a timed test: T chooses one also where no chooser is in sight."""
-        return "" if self._timed.planned is None else self._timed.next_words(label)
+        """Which test the next walk is, or that it is none: T chooses one also where no chooser is in sight."""
+        return tr("No timed test; T chooses one.") if self._timed.planned is None else self._timed.next_words(label)
 
     def _saved(self) -> str:
         """Say that what comes in is saved, only while the journal has it so."""

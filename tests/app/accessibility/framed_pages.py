@@ -103,9 +103,10 @@ def timed() -> QWidget:
 def timed_result() -> QWidget:
     page = WalkingPage()
     page.show_labels(("Shoes", "Barefoot"), "Shoes")
-    attempts = [TimedAttempt(f"walk {k}", TimedProtocol.TEN_METRES, OVER_TEN_METRES, is_kept=True) for k in (1, 2)]
+    planned = PlannedTest(TimedProtocol.TEN_METRES)
+    attempts = [TimedAttempt(f"walk {k}", planned, OVER_TEN_METRES, is_kept=True) for k in (1, 2)]
     page.show_walks(tuple(WalkRow(str(k), "A", "Shoes", WalkState.KEPT, 12) for k in (1, 2)))
-    page.show_tests(TimedProtocol.TEN_METRES, TimedResult(attempts, ["A1 Shoes", "A2 Shoes"]), {})
+    page.show_tests(planned, TimedResult(attempts, ["A1 Shoes", "A2 Shoes"]), {})
     return page
 
 

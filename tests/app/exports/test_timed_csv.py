@@ -18,7 +18,19 @@ from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Side, Site
 from core.results import Analysis
 from core.session import RecordingKind, Session
-from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
+from core.timed.found import (
+    NotMeasured,
+    NotValid,
+    Part,
+    Rise,
+    Silence,
+    Sitting,
+    StairStride,
+    TimedPart,
+    TimedTest,
+    Turn,
+    UpAndGoPart,
+)
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course as course_of_walks
@@ -95,6 +107,58 @@ def test_the_table_has_a_row_for_everything_that_was_found(visit: AnalysedVisit)
     assert (found[9]["side"], found[9]["start_s"], found[9]["climb_m"]) == ("left", "10.000", "0.340")
     assert found[10]["sensor"] == "left_foot"
     assert rows(visit, None) == []
+
+
+def test_what_is_new_stands_after_what_was_there(visit: AnalysedVisit) -> None:
+    assert HEADER[:19][-1] == "missing"  # no column of earlier versions has moved
+    parts = (UpAndGoPart(Part.RISE, 3.0, 4.25), UpAndGoPart(Part.WALK_OUT, 4.25, math.nan))
+    chair = replace(
+        TWO,
+        protocol=TimedProtocol.UP_AND_GO,
+        parts=parts,
+        sittings=(Sitting(20.0, 21.5),),
+        course_m=3.0,
+        course_found_m=4.12,
+        not_valid=(NotValid.COURSE_LONGER, NotValid.MORE_TURNS),
+    )
+    found = rows(visit, chair)
+    assert [one["row"] for one in found][-4:] == ["silence", "part", "part", "sitting"]
+    test, rise, out, sitting = found[0], found[-3], found[-2], found[-1]
+    assert (test["validity"], test["not_valid"]) == (
+        "not_valid",
+        "course_longer_than_entered more_turns_than_the_course_has",
+    )
+    assert (test["course_m"], test["course_found_m"], test["distance_source"]) == ("3.000", "4.120", "feet")
+    assert (rise["part"], rise["start_s"], rise["end_s"], rise["time_s"]) == ("rise", "0.000", "1.250", "1.250")
+    assert (out["part"], out["start_s"], out["end_s"], out["time_s"]) == ("walk_out", "1.250", "", "")
+    assert (sitting["start_s"], sitting["time_s"]) == ("17.000", "1.500")
+    assert rise["validity"] == ""
+    unmeasured = rows(visit, replace(TWO, distance_m=math.nan))[0]
+    assert (unmeasured["validity"], unmeasured["distance_source"]) == ("not_checked", "")
+
+
+def test_of_five_rises_each_the_mean_and_the_slowest_have_a_row(visit: AnalysedVisit) -> None:
+    rises = tuple(Rise(3.0 + 3.0 * k, 4.0 + 3.1 * k) for k in range(5))
+    sittings = tuple(Sitting(4.5 + 3.0 * k, 5.5 + 3.0 * k) for k in range(4))
+    five = replace(TWO, protocol=TimedProtocol.SIT_TO_STAND, rises=rises, sittings=sittings)
+    found = {one["row"]: one for one in rows(visit, five)}  # the last of each kind
+    assert [one["row"] for one in rows(visit, five)].count("rise") == 5
+    assert (found["rise_mean"]["time_s"], found["rise_mean"]["start_s"]) == ("1.200", "")
+    assert (found["rise_slowest"]["time_s"], found["rise_slowest"]["start_s"]) == ("1.400", "12.000")
+    assert found["sitting_mean"]["time_s"] == "1.000"
+    once = replace(five, protocol=TimedProtocol.UP_AND_GO)
+    assert not any("mean" in one["row"] for one in rows(visit, once))
+
+
+def test_the_summary_shows_parts_validity_and_rises(visit: AnalysedVisit) -> None:
+    chair = replace(TWO, parts=(UpAndGoPart(Part.TURN, 9.0, math.nan),), sittings=(Sitting(20.0, 21.5),))
+    session, analysis = with_test(visit, replace(chair, not_valid=(NotValid.NO_TURN,), course_m=3.0))
+    reported = summarise(analysis, session.recordings)["walks"]["walk 2"]["timed_test"]
+    assert reported["parts"] == [{"part": "turn", "start_s": 9.0, "end_s": None, "time_s": None}]
+    assert (reported["validity"], reported["not_valid"]) == ("not_valid", ["no_turn_at_the_cone"])
+    assert (reported["course_m"], reported["course_found_m"], reported["distance_source"]) == (3.0, None, "feet")
+    assert reported["rise_s"] == {"each": [1.0], "mean": 1.0, "slowest": 1.0}
+    assert reported["sitting_s"]["mean"] == 1.5
 
 
 def test_the_summary_shows_of_the_test_under_its_walk_and_of_no_other(visit: AnalysedVisit) -> None:

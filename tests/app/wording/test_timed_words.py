@@ -8,19 +8,25 @@ import pytest
 
 from app.wording.timed_tests import (
     course_sentence,
+    end_words,
     error_words,
+    instruction,
     name_of_test,
+    not_valid_sentence,
     pauses_sentence,
     planned_words,
     reason_words,
+    remedy_sentence,
     result_sentence,
+    slowest_sentence,
+    source_sentence,
     stairs_sentence,
     tape_sentence,
     why_sentence,
 )
 from app.wording.translation import use_language
 from core.body import Side, Site
-from core.timed.found import NotMeasured, Silence, StairStride, TimedPart, TimedTest
+from core.timed.found import DistanceSource, NotMeasured, NotValid, Rise, Silence, StairStride, TimedPart, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
 
 TEN = TimedTest(TimedProtocol.TEN_METRES, 3.0, 11.9, False, False, 10.0, 10.0, 105.0, (), (), (), (), (), (), ())
@@ -82,10 +88,7 @@ def test_strides_on_stairs_are_reported_apart_where_there_are_some() -> None:
     assert stairs_sentence(TEN) == ""
     strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
     reported = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
-    assert reported == (
-        "Strides on stairs are excluded from the means of walking: strides up: 2, mean duration 1.50 s; strides "
-        "down: 1, mean duration 1.50 s."
-    )
+    assert reported == "Strides on stairs: 2 up, 1 down; excluded from the means of walking."
 
 
 def test_an_error_that_was_not_verified_has_a_dagger() -> None:
@@ -111,3 +114,63 @@ def test_the_known_errors_are_reported_in_german_with_a_comma() -> None:
         use_language("en")
     assert not re.search(r"\b(worst|simulated|minutes|rater)\b", every)
     assert "bis zu 1,2 %, schlechtester von 60 simulierten Durchgängen" in every
+
+
+@pytest.mark.parametrize("protocol", TimedProtocol)
+def test_how_a_test_is_done_and_ends_names_the_course_as_it_was_entered(protocol: TimedProtocol) -> None:
+    own = instruction(PlannedTest(protocol)), end_words(PlannedTest(protocol))
+    assert all(own)
+    assert "{" not in "".join(own)
+    if protocol is TimedProtocol.TEN_METRES:
+        assert own[0].startswith("A straight 14 m: 2 m run-in, 10 m timed")
+        six = PlannedTest(protocol, course_m=6.0)
+        assert instruction(six).startswith("A straight 10 m: 2 m run-in, 6 m timed")
+        assert end_words(six) == "6 m further on, by the sensors"
+
+
+UP = replace(
+    TEN, protocol=TimedProtocol.UP_AND_GO, course_m=3.0, course_found_m=6.6, sensor_distance_m=13.34, distance_m=13.34
+)
+
+
+@pytest.mark.parametrize(
+    ("reasons", "sentence"),
+    [
+        ((NotValid.COURSE_LONGER,), "Not valid: 6.6 m from the chair to the turn, the course is 3 m."),
+        (
+            (NotValid.COURSE_LONGER, NotValid.NO_TURN, NotValid.ELSEWHERE),
+            "Not valid: 13.3 m walked without a turn, the course turns at 3 m.",
+        ),
+        ((NotValid.COURSE_LONGER, NotValid.NO_RISE), "Not valid: no rise from the chair."),
+        ((), ""),
+    ],
+)
+def test_a_test_that_is_not_valid_says_so_by_its_gravest_reason(reasons: tuple[NotValid, ...], sentence: str) -> None:
+    test = replace(UP, not_valid=reasons)
+    assert not_valid_sentence(test) == sentence
+    assert bool(remedy_sentence(test)) is bool(reasons)
+
+
+@pytest.mark.parametrize("reason", NotValid)
+def test_every_reason_has_its_words_and_what_to_do(reason: NotValid) -> None:
+    test = replace(UP, not_valid=(reason,))
+    assert not_valid_sentence(test).startswith("Not valid: ")
+    assert "{" not in not_valid_sentence(test) + remedy_sentence(test)
+    assert remedy_sentence(test)
+
+
+def test_the_source_of_a_distance_is_stated_of_a_set_time_alone() -> None:
+    assert source_sentence(TWO) == "Distance: foot sensors."
+    typed = replace(TWO, distance_source=DistanceSource.TYPED, course_m=20.0, sensor_distance_m=131.6)
+    assert source_sentence(typed) == "Distance: laps entered, 20 m each; the foot sensors measured 132 m."
+    assert source_sentence(replace(typed, sensor_distance_m=math.nan)) == "Distance: laps entered, 20 m each."
+    assert source_sentence(replace(TWO, distance_m=math.nan)) == ""
+    assert source_sentence(UP) == ""
+
+
+def test_the_slowest_of_several_rises_is_named() -> None:
+    rises = tuple(Rise(3.0 * k, 3.0 * k + lasts_s) for k, lasts_s in enumerate((1.1, 1.4, 1.2)))
+    five = replace(TEN, protocol=TimedProtocol.SIT_TO_STAND, rises=rises)
+    assert slowest_sentence(five) == "Slowest rise: number 2, 1.40 s."
+    assert slowest_sentence(replace(five, rises=rises[:1])) == ""
+    assert slowest_sentence(replace(UP, rises=rises[:1])) == ""

@@ -10,7 +10,7 @@ from core.body import Segment, Side, Site
 from core.calibration.rest import rest_of
 from core.live.sensors import LiveSensor, LiveSensors
 from core.session import Recording
-from core.timed.found import NotMeasured
+from core.timed.found import NotMeasured, Validity
 from core.timed.live import LiveTest
 from core.timed.protocols import KeyMeaning, PlannedTest, TimedProtocol
 from devices.simulation.walker_body import CourseKind, TimedCourse, Tissue
@@ -34,7 +34,7 @@ class CourseReceived:
         upright = {site: rest.acc_m_s2 for site, rest in rests.items() if site.segment is Segment.THIGH}
         self.now_s = min(float(block.time_s[0]) for block in course.imu.values())
         self.end_s = max(float(block.time_s[-1]) for block in course.imu.values())
-        self.test = LiveTest(protocol, upright, frozenset(), sides, self.now_s)
+        self.test = LiveTest(PlannedTest(protocol), upright, frozenset(), sides, self.now_s)
 
     def hear_until(self, time_s: float) -> None:
         while self.now_s < min(time_s, self.end_s):
@@ -142,6 +142,12 @@ def test_tests_from_a_chair_are_reported_live(kind: CourseKind) -> None:
     received.hear_until(math.inf)
     assert received.test.state.end_s == pytest.approx(end_s, abs=0.1)
     assert received.test.state.elapsed_s(0.0) == pytest.approx(end_s - made.truth.left_seat_s[0], abs=0.15)
+    found = received.test.state.found
+    assert found is not None
+    if kind is CourseKind.UP_AND_GO:
+        assert found.validity is Validity.VALID
+        for one in found.parts:
+            assert (one.start_s, one.end_s) == pytest.approx(made.truth.parts_s[one.part], abs=0.4)
 
 
 @pytest.mark.endurance

@@ -6,7 +6,17 @@ from dataclasses import replace
 import pytest
 
 from core.goals import OF_TESTS, GoalOf, whose
-from core.timed.measures import COLUMNS, PROTOCOLS, figure_of, mean_of_attempts, rests_on_feet
+from core.timed.found import DistanceSource, NotValid, TimedPart
+from core.timed.measures import (
+    COLUMNS,
+    PROTOCOLS,
+    counted_figure,
+    figure_of,
+    mean_of_attempts,
+    mean_pace,
+    pace_of,
+    rests_on_feet,
+)
 from core.timed.protocols import TimedProtocol
 from tests.core.timed.built_tests import built_test
 
@@ -41,9 +51,31 @@ def test_only_a_way_that_the_feet_show_rests_on_them() -> None:
         assert rests_on_feet(test) is (protocol in by_feet)
     at_the_tape = built_test(TimedProtocol.TEN_METRES, is_end_by_key=True)
     assert not rests_on_feet(at_the_tape)
+    typed = replace(built_test(TimedProtocol.SIX_MINUTES), distance_source=DistanceSource.TYPED)
+    assert not rests_on_feet(typed)
 
 
 def test_the_mean_is_of_attempts_that_were_measured() -> None:
     found = mean_of_attempts([10.0, math.nan, 12.0])
     assert (found.mean, found.attempts) == (11.0, 2)
     assert not math.isfinite(mean_of_attempts([math.nan]).mean)
+
+
+def test_a_test_that_is_not_valid_counts_in_no_mean() -> None:
+    valid, longer = (built_test(TimedProtocol.UP_AND_GO, time_s=time_s) for time_s in (10.0, 16.0))
+    other = replace(longer, not_valid=(NotValid.COURSE_LONGER,))
+    assert mean_of_attempts(map(counted_figure, (valid, other))) == mean_of_attempts([10.0])
+    assert figure_of(other) == pytest.approx(16.0)  # it is shown, with its reason
+
+
+def test_pace_is_over_the_whole_and_over_thirds_of_valid_attempts() -> None:
+    thirds = tuple(TimedPart(k, k + 1.0, 1.0, speed, 100.0) for k, speed in enumerate((1.2, 1.1, math.nan)))
+    one = replace(built_test(TimedProtocol.SIX_MINUTES, time_s=10.0, distance_m=10.0), thirds=thirds)
+    other = replace(built_test(TimedProtocol.SIX_MINUTES, time_s=10.0, distance_m=12.0), thirds=thirds)
+    wrong = replace(other, distance_m=30.0, not_valid=(NotValid.LAP_DIFFERS,))
+    assert pace_of(one).speed_m_s == pytest.approx(1.0)
+    mean = mean_pace([one, other, wrong])
+    assert mean.speed_m_s == pytest.approx(1.1)
+    assert mean.thirds_m_s[:2] == pytest.approx((1.2, 1.1))
+    assert math.isnan(mean.thirds_m_s[2])
+    assert mean_pace([]).thirds_m_s == ()

@@ -11,11 +11,13 @@ from core.gait.strides import Reason
 from core.samples import RateKind
 from core.session import Recording, Session
 from core.signal.sensors import SensorTracks
-from core.timed.found import NotMeasured, TimedTest
+from core.timed.found import DistanceSource, NotMeasured, NotValid, Part, TimedTest, Validity
+from core.timed.measures import counted_figure
 from core.timed.protocols import DEFINITIONS, PlannedTest, TimedProtocol
 from core.timed.timing import time_test
 from devices.simulation.walker_body import CourseKind, TimedCourse, Tissue
 from devices.simulation.walker_courses import CourseTruth, SimulatedCourse, draw_course, simulate_course
+from devices.simulation.walker_route import spoiled
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 TEN_METRES = TimedCourse(CourseKind.TEN_METRES, seed=2, speed_m_s=0.9, sites=FEET, tissue=Tissue.SOFT)
@@ -24,9 +26,14 @@ TWO_MINUTES = TimedCourse(
 )
 
 
-def timed(session: Session, protocol: TimedProtocol, keys_s: tuple[float, ...] = ()) -> TimedTest:
+def timed(session: Session, protocol: TimedProtocol, keys_s: tuple[float, float] | None = None) -> TimedTest:
+    start_s, end_s = keys_s or (None, None)
+    return held(session, PlannedTest(protocol, start_s, end_s))
+
+
+def held(session: Session, planned: PlannedTest) -> TimedTest:
     tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
-    return time_test(tracks, session.recordings[-1], PlannedTest(protocol, *keys_s))
+    return time_test(tracks, session.recordings[-1], planned)
 
 
 def with_course(session: Session, course: Recording) -> Session:
@@ -101,7 +108,7 @@ def test_two_minutes_with_turns_a_pause_and_a_slowing_patient(two_minutes: Simul
 
 
 def test_a_silent_foot_takes_the_distance_and_not_the_time() -> None:
-    course = replace(TWO_MINUTES, silent_s={Site.LEFT_FOOT: (50.0, 55.0)})
+    course = replace(TWO_MINUTES, silent_s={Site.LEFT_FOOT: (60.0, 65.0)})
     made = simulate_course(course)
     found = timed(made.session, TimedProtocol.TWO_MINUTES)
     assert found.time_s == pytest.approx(120.0)
@@ -110,7 +117,7 @@ def test_a_silent_foot_takes_the_distance_and_not_the_time() -> None:
     assert found.missing == (NotMeasured.SILENT,)
     (silence,) = found.silences
     assert silence.site is Site.LEFT_FOOT
-    assert (silence.start_s, silence.end_s) == pytest.approx((50.0, 55.0), abs=0.05)
+    assert (silence.start_s, silence.end_s) == pytest.approx((60.0, 65.0), abs=0.05)
     start_s = float(made.truth.contacts_s[0])
     assert len(found.turns) == len(turns_between(made.truth, start_s, start_s + 120.0))
     assert len(found.pauses_s) == len(made.truth.pauses_s)
@@ -128,6 +135,107 @@ def test_up_and_go_from_leaving_the_seat_to_sitting_again(up_and_go: SimulatedCo
     assert len(found.rises) == 1
 
 
+def test_an_up_and_go_has_six_parts_and_is_held_against_its_course(up_and_go: SimulatedCourse) -> None:
+    found = timed(up_and_go.session, TimedProtocol.UP_AND_GO)
+    assert [one.part for one in found.parts] == list(Part)
+    for one in found.parts:
+        planned_s = up_and_go.truth.parts_s[one.part]
+        assert (one.start_s, one.end_s) == pytest.approx(planned_s, abs=0.3)
+    assert (found.parts[0].start_s, found.parts[-1].end_s) == pytest.approx((found.start_s, found.end_s))
+    assert (found.course_m, found.validity) == (3.0, Validity.VALID)
+    assert found.course_found_m == pytest.approx(3.0, abs=0.5)
+    # who walks the same way on a course that is laid out otherwise does another test
+    planned = PlannedTest(TimedProtocol.UP_AND_GO, course_m=5.0)
+    assert held(up_and_go.session, planned).not_valid == (NotValid.COURSE_SHORTER,)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ("4 m", NotValid.COURSE_LONGER),
+        ("turned early", NotValid.COURSE_SHORTER),
+        ("sideways", NotValid.NO_TURN_TO_SIT),
+        ("other chair", NotValid.ELSEWHERE),
+        ("twice", NotValid.MORE_TURNS),
+        ("false start", NotValid.NO_TURN),
+    ],
+)
+def test_a_course_that_is_no_up_and_go_is_not_valid(wrong: str, reason: NotValid) -> None:
+    course = draw_course(CourseKind.UP_AND_GO, 1)
+    how = spoiled(course.up_and_go, wrong, np.random.default_rng(1))
+    found = timed(simulate_course(replace(course, up_and_go=how)).session, TimedProtocol.UP_AND_GO)
+    assert reason in found.not_valid
+    assert found.validity is Validity.NOT_VALID
+    assert not np.isfinite(counted_figure(found))
+
+
+def test_keys_while_nobody_rises_are_no_up_and_go(up_and_go: SimulatedCourse) -> None:
+    seated_s = (0.2, float(up_and_go.truth.left_seat_s[0]) - 0.5)
+    assert NotValid.NO_RISE in timed(up_and_go.session, TimedProtocol.UP_AND_GO, seated_s).not_valid
+
+
+def test_without_feet_a_course_is_not_checked_and_its_walked_parts_are_missing(up_and_go: SimulatedCourse) -> None:
+    course = up_and_go.session.recordings[1]
+    thighs = {site: block for site, block in course.imu.items() if site not in FEET}
+    found = timed(with_course(up_and_go.session, replace(course, imu=thighs)), TimedProtocol.UP_AND_GO)
+    assert (found.validity, found.is_valid) == (Validity.NOT_CHECKED, True)
+    known = {one.part for one in found.parts if np.isfinite(one.time_s)}
+    assert known == {Part.RISE, Part.SIT}
+
+
+def test_keys_on_a_tape_that_is_elsewhere_are_not_valid(ten_metres: SimulatedCourse) -> None:
+    truth = ten_metres.truth
+    short = timed(ten_metres.session, TimedProtocol.TEN_METRES, (truth.passes_s(2.0), truth.passes_s(10.0)))
+    assert short.not_valid == (NotValid.COURSE_SHORTER,)
+    planned = PlannedTest(TimedProtocol.TEN_METRES, truth.passes_s(2.0), truth.passes_s(10.0), course_m=8.0)
+    found = held(ten_metres.session, planned)
+    assert (found.validity, found.distance_m, found.distance_source) == (Validity.VALID, 8.0, DistanceSource.TAPE)
+    # without a key the feet would be compared with themselves
+    unkeyed = held(ten_metres.session, PlannedTest(TimedProtocol.TEN_METRES, course_m=6.0))
+    assert (unkeyed.validity, unkeyed.distance_m) == (Validity.NOT_CHECKED, 6.0)
+
+
+def test_ten_metres_there_and_back_are_not_valid(two_minutes: SimulatedCourse) -> None:
+    keys_s = (4.0, 30.0)
+    assert NotValid.MORE_TURNS in timed(two_minutes.session, TimedProtocol.TEN_METRES, keys_s).not_valid
+
+
+def test_laps_of_an_entered_length_count_and_are_held_against_the_feet(two_minutes: SimulatedCourse) -> None:
+    truth = two_minutes.truth
+    by_feet = timed(two_minutes.session, TimedProtocol.TWO_MINUTES)
+    assert (by_feet.distance_source, by_feet.validity) == (DistanceSource.FEET, Validity.NOT_CHECKED)
+    planned = PlannedTest(TimedProtocol.TWO_MINUTES, lap_m=12.0)
+    found = held(two_minutes.session, planned)
+    end_s = float(truth.contacts_s[0]) + 120.0
+    done = [turn for turn in truth.turns if 0.5 * (turn.start_s + turn.end_s) <= end_s]
+    rest_m = truth.way_at(end_s) - truth.way_at(done[-1].end_s)
+    assert found.distance_source is DistanceSource.FOUND_LAPS
+    assert found.distance_m == pytest.approx(len(done) * 12.0 + rest_m, abs=1.0)
+    assert found.distance_m < found.sensor_distance_m  # which has the ways round the cones, too
+    assert found.validity is Validity.VALID
+    assert found.course_found_m == pytest.approx(12.0, abs=0.5)
+    typed = held(two_minutes.session, replace(planned, typed_laps=len(done), rest_m=rest_m))
+    assert typed.distance_source is DistanceSource.TYPED
+    assert typed.distance_m == pytest.approx(len(done) * 12.0 + rest_m)
+    assert typed.validity is Validity.VALID
+    whole = held(two_minutes.session, replace(planned, typed_laps=len(done)))  # the last lap was not measured
+    assert (whole.distance_m, whole.not_valid) == (len(done) * 12.0, ())
+    miscounted = held(two_minutes.session, replace(planned, typed_laps=len(done) + 1, rest_m=rest_m))
+    assert miscounted.not_valid == (NotValid.DISTANCE_DIFFERS,)
+    longer = held(two_minutes.session, replace(planned, lap_m=15.0))
+    assert NotValid.LAP_DIFFERS in longer.not_valid
+
+
+def test_laps_count_where_one_foot_was_silent_and_not_where_both_were() -> None:
+    planned = PlannedTest(TimedProtocol.TWO_MINUTES, lap_m=12.0)
+    one = simulate_course(replace(TWO_MINUTES, silent_s={Site.LEFT_FOOT: (60.0, 65.0)}))
+    assert held(one.session, planned).distance_source is DistanceSource.FOUND_LAPS
+    both = simulate_course(replace(TWO_MINUTES, silent_s=dict.fromkeys(FEET, (60.0, 65.0))))
+    found = held(both.session, planned)
+    assert np.isnan(found.distance_m)
+    assert found.validity is Validity.NOT_CHECKED
+
+
 @pytest.mark.parametrize("seed", [0, 5])
 def test_five_rises_are_timed_to_the_fifth(seed: int) -> None:
     made = simulate_course(draw_course(CourseKind.SIT_TO_STAND, seed))
@@ -135,6 +243,10 @@ def test_five_rises_are_timed_to_the_fifth(seed: int) -> None:
     assert found.time_s == pytest.approx(made.truth.upright_s[4] - made.truth.left_seat_s[0], abs=0.1)
     np.testing.assert_allclose([rise.left_seat_s for rise in found.rises], made.truth.left_seat_s, atol=0.1)
     np.testing.assert_allclose([rise.upright_s for rise in found.rises], made.truth.upright_s, atol=0.1)
+    np.testing.assert_allclose([one.seated_s for one in found.sittings], made.truth.seated_s, atol=0.1)
+    took_s = [one.time_s for one in found.rises]
+    np.testing.assert_allclose(took_s, made.truth.upright_s - made.truth.left_seat_s, atol=0.15)
+    assert (found.parts, found.validity) == ((), Validity.NOT_CHECKED)
     assert found.pauses_s == ()
     assert np.isnan(found.distance_m)
     assert found.missing == ()
@@ -214,6 +326,10 @@ def test_strides_on_stairs_are_reported_with_their_heights_and_are_in_no_mean(se
     assert on_stairs >= len(found.stairs) - 2  # a stride over 3 s is none
     for gait in walk.gait.values():
         assert np.all(np.abs(gait.strides.climb_m[gait.strides.is_used]) < 0.1)
+        # the means are of the level strides: by far longer than those on treads of some 0.3 m
+        level_m = gait.strides.length_m[gait.strides.is_used]
+        on_m = gait.strides.length_m[[one in (Reason.STAIRS_UP, Reason.STAIRS_DOWN) for one in gait.strides.reason]]
+        assert level_m.min() > on_m.max()
 
 
 def test_no_stride_of_a_level_course_is_on_stairs(two_minutes: SimulatedCourse) -> None:

@@ -99,12 +99,14 @@ def tilt(levels_deg: list[tuple[float, float]]) -> FloatArray:
 
 def test_a_rise_and_a_sitting_are_timed_by_tenths_of_the_way() -> None:
     found = motions_of_tilt(TIME_S, tilt([(4, 90), (6, 0), (15, 0), (17, 90)]))
-    ((rise,), (seated_s,)) = found.rises, found.seated_s
-    assert (rise.left_seat_s, rise.upright_s, seated_s) == pytest.approx((4.2, 5.8, 16.8), abs=0.04)
+    ((rise,), (sitting,)) = found.rises, found.sittings
+    assert (rise.left_seat_s, rise.upright_s) == pytest.approx((4.2, 5.8), abs=0.04)
+    assert (sitting.left_upright_s, sitting.seated_s) == pytest.approx((15.2, 16.8), abs=0.04)
+    assert (rise.time_s, sitting.time_s) == pytest.approx((1.6, 1.6), abs=0.05)
 
 
 def test_walking_and_half_a_rise_are_no_rise() -> None:
     walking = np.deg2rad(15.0 + 12.0 * np.sin(TIME_S * 10.0))
     assert motions_of_tilt(TIME_S, walking).rises == ()
     tried = motions_of_tilt(TIME_S, tilt([(4, 90), (5, 60), (6, 90)]))
-    assert (tried.rises, tried.seated_s) == ((), ())
+    assert (tried.rises, tried.sittings) == ((), ())

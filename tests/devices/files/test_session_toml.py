@@ -196,9 +196,21 @@ def test_which_test_a_walk_is_is_read_and_written_again_with_its_keys() -> None:
     assert parse(render(session, plans)) == (session, plans)
 
 
+def test_what_was_entered_of_a_test_is_read_and_written_again() -> None:
+    entered = 'test = "6 min"\ntest_course_m = 3\ntest_lap_m = 30.0\ntest_laps = 11\ntest_rest_m = 12.5\n'
+    session, plans = parse(TOML + entered)
+    assert plans[0].recording.test == PlannedTest(TimedProtocol.SIX_MINUTES, None, None, 3.0, 30.0, 11, 12.5)
+    assert plans[0].recording.unknown == {}
+    assert parse(render(session, plans)) == (session, plans)
+
+
 @pytest.mark.parametrize(
     "other",
     [
+        'test = "6 min"\ntest_laps = 2.5',
+        'test = "6 min"\ntest_laps = -1',
+        'test = "6 min"\ntest_lap_m = 0',
+        'test = "up and go"\ntest_course_m = "three"',
         'test = "100 m"',
         "test = 10",
         "test_end_s = 3.0",

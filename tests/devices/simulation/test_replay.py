@@ -9,13 +9,13 @@ import pytest
 from core.samples import ImuBlock
 from core.session import RecordingKind, Session
 from devices.live import SourceLostError, SourceRefusedError
+from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.replay import (
     BUFFER_S,
     DEMONSTRATION_SESSION,
     SHAKE_RAD_S,
     ReplayFaults,
     ReplaySource,
-    demonstration,
 )
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
@@ -173,7 +173,7 @@ def test_who_finishes_walks_on_and_moves_freely_until_something_else_is_asked(
 
 def test_demonstration_patient_takes_the_same_pose_between_all_that_is_asked() -> None:
     few = replace(DEMONSTRATION_SESSION, recordings=(Standing(), FreeMotion(duration_s=6.0), Walk(strides=3)))
-    source, truth = demonstration(few), simulate(few).truth
+    source, truth = DemonstrationPatient(few), simulate(few).truth
     assert sorted(source.info.sensors) == list(source.info.sensors)
     assert {reported.serial for reported in source.details().values()} == set(source.info.sensors)
     for name, recording in truth.recordings.items():

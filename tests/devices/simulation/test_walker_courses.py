@@ -7,8 +7,9 @@ import pytest
 
 from core.body import Side, Site
 from core.samples import FloatArray
-from devices.simulation.walker_body import NO_ERRORS, CourseKind, TimedCourse
-from devices.simulation.walker_courses import SimulatedCourse, draw_course, simulate_course
+from devices.simulation.walker_body import NO_ERRORS, CourseKind, TimedCourse, WalkerSettings, make_leg
+from devices.simulation.walker_courses import SimulatedCourse, draw_course, simulate_course, walk_course
+from devices.simulation.walker_route import INVALID, spoiled
 
 UP_AND_GO = TimedCourse(CourseKind.UP_AND_GO, seed=3, errors=NO_ERRORS, hesitates=True)
 
@@ -100,6 +101,71 @@ def test_laps_are_as_long_as_asked_and_turns_go_to_both_sides() -> None:
         for turn in simulate_course(TimedCourse(CourseKind.UP_AND_GO, seed=seed, sites=(Site.LEFT_FOOT,))).truth.turns
     ]
     assert {-1.0, 1.0} == set(signs)
+
+
+def footholds(course: TimedCourse) -> FloatArray:
+    """Where the middle between the feet is in the end (2,) and farthest away (2,), m, from where they are first."""
+    legs = {side: make_leg(WalkerSettings(seed=course.seed), side) for side in Side}
+    motions = walk_course(course, legs)[0]
+    every = np.concatenate([motion.footholds_m for motion in motions.values()])
+    first = np.mean([motion.footholds_m[0] for motion in motions.values()], axis=0)
+    last = np.mean([motion.footholds_m[-1] for motion in motions.values()], axis=0)
+    return np.array([last - first, every[np.argmax(np.linalg.norm(every - first, axis=1))] - first])
+
+
+@pytest.mark.parametrize("cone_m", [3.0, 5.0])
+@pytest.mark.parametrize("is_unwound", [True, False])
+def test_an_up_and_go_leads_round_its_cone_and_back_to_the_chair(cone_m: float, is_unwound: bool) -> None:
+    for seed in range(4):
+        course = draw_course(CourseKind.UP_AND_GO, seed)
+        how = replace(course.up_and_go, cone_m=cone_m, is_unwound=is_unwound, overshoot_m=0.0)
+        last, far = np.linalg.norm(footholds(replace(course, up_and_go=how)), axis=1)
+        assert last < 0.3
+        assert abs(far - (cone_m + how.clearance_m - how.stands_at_m)) < 0.35  # a foot is half a step from the body
+
+
+def test_an_up_and_go_that_is_spoiled_leads_elsewhere() -> None:
+    course = draw_course(CourseKind.UP_AND_GO, 1)
+    found = {}
+    for wrong in INVALID:
+        how = spoiled(course.up_and_go, wrong, np.random.default_rng(0))
+        found[wrong] = np.linalg.norm(footholds(replace(course, up_and_go=how)), axis=1)
+    assert found["past the cone"][1] > found["twice"][1] + 0.8 > found["turned early"][1] + 1.6
+    assert found["one way"][0] > 2.0
+    assert 0.7 < found["other chair"][0] < 2.2
+    assert found["sideways"][0] < 0.6
+
+
+def test_the_parts_of_an_up_and_go_follow_each_other() -> None:
+    for seed in range(6):
+        parts_s = simulate_course(
+            replace(draw_course(CourseKind.UP_AND_GO, seed), sites=(Site.LEFT_FOOT,))
+        ).truth.parts_s
+        names = ["rise", "walk_out", "turn", "walk_back", "turn_to_sit"]
+        borders = [parts_s[name][0] for name in names] + [parts_s["turn_to_sit"][1]]
+        assert list(parts_s) == [*names, "sit"]
+        assert np.all(np.diff(borders) > 0.0)
+        assert parts_s["sit"][1] > parts_s["turn_to_sit"][1]
+
+
+def test_laps_lie_between_two_cones() -> None:
+    course = TimedCourse(CourseKind.TWO_MINUTES, seed=2, lap_m=11.0)
+    far = np.linalg.norm(footholds(course)[1])
+    assert 11.0 < far < 12.2  # round the cone, at most 0.6 m from it
+
+
+@pytest.mark.parametrize("kind", [kind for kind in CourseKind if kind is not CourseKind.SIX_MINUTES])
+def test_a_course_that_is_joined_begins_and_ends_with_standing(kind: CourseKind) -> None:
+    sites = (Site.LEFT_THIGH, Site.LEFT_FOOT)
+    made = simulate_course(TimedCourse(kind, seed=4, sites=sites, is_joined=True, lap_m=40.0, errors=NO_ERRORS))
+    standing, course = made.session.recordings
+    for site in sites:
+        acc, upright = course.imu[site].acc_m_s2, standing.imu[site].acc_m_s2.mean(axis=0)
+        for end in (acc[:30], acc[-30:]):
+            assert np.linalg.norm(end.mean(axis=0) - upright) < 0.4
+    is_from_chair = kind in (CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND)
+    assert len(made.truth.seated_s) >= int(is_from_chair)
+    assert bool(len(made.truth.left_seat_s)) is is_from_chair
 
 
 def test_a_silent_sensor_sends_nothing_and_the_others_go_on() -> None:

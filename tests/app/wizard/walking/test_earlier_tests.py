@@ -18,7 +18,7 @@ from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResu
 from app.workers.library_controller import LibraryController
 from core.session import Session
 from core.timed.measures import COLUMNS
-from core.timed.protocols import TimedProtocol
+from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.course_material import analysis, course, recordings, timed
 from tests.app.library_answers import asked
 from tests.core.timed.built_tests import built_test
@@ -77,7 +77,7 @@ def results(*times_s: float) -> TimedResultView:
         for number, time_s in enumerate(times_s)
     ]
     (lane,) = lanes(visits, SHOES, (), (kind,))
-    attempt = TimedAttempt("walk 1", TEN, built_test(TEN, time_s=times_s[-1]), is_kept=True)
+    attempt = TimedAttempt("walk 1", PlannedTest(TEN), built_test(TEN, time_s=times_s[-1]), is_kept=True)
     view.show_state(TimedResult([attempt], ["A Shoes"], visits, lane if len(visits) > 1 else None))
     return view
 

@@ -9,14 +9,14 @@ from app.widgets.table_cells import TextCell
 from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResultView
 from core.timed.found import TimedTest
-from core.timed.protocols import TimedProtocol
+from core.timed.protocols import PlannedTest, TimedProtocol
 
 TEN = TimedTest(TimedProtocol.TEN_METRES, 3.0, 12.0, False, False, 10.0, 10.0, 105.0, (), (), (), (), (), (), ())
 
 
 def attempt(number: int, time_s: float, *, is_kept: bool = True) -> TimedAttempt:
     found = replace(TEN, end_s=TEN.start_s + time_s)
-    return TimedAttempt(f"walk {number}", TimedProtocol.TEN_METRES, found, is_kept)
+    return TimedAttempt(f"walk {number}", PlannedTest(TimedProtocol.TEN_METRES), found, is_kept)
 
 
 def texts(row: TableRow) -> list[str]:
@@ -33,7 +33,7 @@ def shown(qtbot: QtBot, *attempts: TimedAttempt) -> list[list[str]]:
 def test_the_mean_is_of_the_attempts_that_count(qtbot: QtBot) -> None:
     rows = shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False), attempt(3, 8.0))
     assert rows[1][0] == "A2 Shoes, excluded"
-    assert rows[3:] == [["Mean of 2", "8.5", "10.0", "1.18", "105", ""]]
+    assert rows[3:] == [["Mean of 2", "8.5", "1.18", "105"]]
 
 
 def test_one_attempt_has_no_mean(qtbot: QtBot) -> None:

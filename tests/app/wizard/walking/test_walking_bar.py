@@ -99,7 +99,7 @@ def test_at_the_bench_it_states_what_the_next_walk_is_walked_with(visit: Any, be
     asked = bar.state("Shoes")
     assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
     assert asked.primary is not None
-    assert (asked.primary.text, asked.note) == ("Include C", "")
+    assert (asked.primary.text, asked.note) == ("Include C", "No timed test; T chooses one.")
 
 
 def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, bench: Bench, bar: WalkingBar) -> None:
