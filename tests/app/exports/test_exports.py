@@ -280,9 +280,12 @@ def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp
         "fhir_bundle.json",
         "free_motion/angles.c3d",
         "free_motion/angles.mot",
+        "free_motion/orientations.sto",
         "gaitwright.xlsx",
+        "standing/orientations.sto",
         "walk_1/angles.c3d",
         "walk_1/angles.mot",
+        "walk_1/orientations.sto",
     ]
 
 

@@ -1,0 +1,57 @@
+"""The manual names the programs that opened our files: each by a test, with the version that it was run with."""
+
+import importlib
+import re
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import pytest
+
+HELP = Path(__file__).parents[3] / "resources" / "help"
+TITLES = {
+    "files.md": "### Programs that opened these files",
+    "de/files.md": "### Programme, die diese Dateien geöffnet haben",
+}
+ROW = re.compile(r"\| `?(?P<file>[^|`]+)`? \| (?P<program>\S+) (?P<version>[\d.]+) \| (?P<what>[^|]+) \|")
+# file and program -> the test that opens it, and the package whose version it is
+PROGRAMS = {
+    ("angles.mot", "OpenSim"): (
+        "opensim",
+        "test_opensim.test_opensim_reads_every_row",
+        "test_opensim.test_a_model_moves_as_the_patient_did_and_within_its_limits",
+    ),
+    ("orientations.sto", "OpenSim"): (
+        "opensim",
+        "test_opensim.test_opensim_reads_our_orientations_and_we_read_its_own",
+        "test_opensim.test_opensense_moves_its_model_as_the_patient_moved",
+    ),
+}
+
+
+def rows(page: str) -> list[re.Match[str]]:
+    _, table = (HELP / page).read_text(encoding="utf-8").split(TITLES[page])
+    lines = [line for line in table.split("\n## ")[0].splitlines() if line.startswith("| ")][1:]
+    found = [ROW.fullmatch(line) for line in lines]
+    assert all(found), lines
+    return [one for one in found if one]
+
+
+@pytest.mark.parametrize("page", TITLES)
+def test_every_program_that_the_manual_names_has_its_tests(page: str) -> None:
+    named = [(one["file"], one["program"]) for one in rows(page)]
+    assert named == list(PROGRAMS)
+    for _, *tests in PROGRAMS.values():
+        for test in tests:
+            module, name = test.split(".")
+            assert callable(getattr(importlib.import_module(f"tests.app.exports.{module}"), name))
+
+
+@pytest.mark.parametrize("page", TITLES)
+def test_the_versions_are_those_that_the_tests_run_with(page: str) -> None:
+    for one in rows(page):
+        package, *_ = PROGRAMS[one["file"], one["program"]]
+        try:
+            found = version(package)
+        except PackageNotFoundError:
+            continue  # its tests are skipped too, and state so
+        assert found == one["version"], one["program"]
