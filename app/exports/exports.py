@@ -170,7 +170,9 @@ def _write_format(session: Session, analysis: Analysis, required: Format, folder
         return [f"{required}: {why}"] if why else []
     else:
         if required is Format.C3D:
-            from app.exports.c3d_angles import write_c3d as write  # ezc3d, which may be missing
+            from app.exports.c3d_angles import write_c3d  # ezc3d, which may be missing
+
+            write = partial(write_c3d, code=session.patient.code)
         else:
             write = partial(write_motion, model=model)
 

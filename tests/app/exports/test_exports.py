@@ -292,7 +292,7 @@ def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp
 def test_a_format_that_fails_takes_no_other_with_it(
     visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> str:
+    def fail(*_: object, **__: object) -> str:
         raise RuntimeError("what its library threw")
 
     monkeypatch.setattr("app.exports.c3d_angles.write_c3d", fail)
