@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.other_programs import version_in_python
+from tests.other_programs import version_in_node, version_in_python
 
 HELP = Path(__file__).parents[3] / "resources" / "help"
 TITLES = {
@@ -37,6 +37,12 @@ PROGRAMS = {
         "test_c3d_readers.test_kineticstoolkit_reads_angles_units_and_events",
     ),
     ("angles.c3d", "pyomeca"): ("pyomeca", "test_c3d_readers.test_pyomeca_reads_angles_and_units"),
+    ("fhir_bundle.json", "fhir-resources"): (
+        "fhir-resources",
+        "test_fhir_transaction.test_fhir_resources_takes_the_transaction",
+        "test_formats.test_another_library_takes_the_bundle",
+    ),
+    ("fhir_bundle.json", "fhir"): ("npm:fhir", "test_fhir_transaction.test_fhir_of_npm_finds_no_error"),
 }
 
 
@@ -62,5 +68,6 @@ def test_every_program_that_the_manual_names_has_its_tests(page: str) -> None:
 def test_the_versions_are_those_that_the_tests_run_with(page: str) -> None:
     for one in rows(page):
         package, *_ = PROGRAMS[one["file"], one["program"]]
-        found, _ = version_in_python(package)
+        name = package.removeprefix("npm:")
+        found = version_in_python(name)[0] if name == package else version_in_node(name)
         assert found in ("", one["version"]), one["program"]  # without it its tests are skipped too, and state so
