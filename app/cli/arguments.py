@@ -21,7 +21,8 @@ IMPORTED = (
     *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "shimmer", "mvnx", "apdm", "opensim", "bids-motion"),
     *("xdf", "matlab", "parquet", "csv"),
 )
-EXPORTED = ("xlsx", "c3d", "mot", "fhir", "bids-motion")
+EXPORTED = ("xlsx", "c3d", "mot", "sto", "fhir", "bids-motion")
+MODELS = ("rajagopal2016", "gait2392")
 TYPED = ("device", "aids", "surface", "conditions", "changes")
 PAPERS = ("a4", "letter")
 EMULATED = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")

@@ -12,6 +12,7 @@ from app.exports.exports import (
     preview_from_folder,
     preview_from_library,
 )
+from app.exports.opensim_motion import Model
 from app.exports.result_folder import session_of, written_beside
 from app.importing.untrusted_files import read_foreign_session
 from app.storage.pseudonyms import Typed
@@ -44,17 +45,22 @@ def run(args: argparse.Namespace, report: Report) -> list[str]:
         raise FileRefusedError(
             str(args.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
         )
+    identified, model = args.identified, Model(args.model)
     with written_beside(args.out) as folder:
         if isinstance(args.session, LibrarySession):
             with opened_library(args) as opened:
-                session_id, identified = args.session.id, args.identified
                 lines = export_from_library(
-                    opened, session_id, formats, folder, DECODERS, report, kept=kept, is_identified=identified
+                    *(opened, args.session.id, formats, folder, DECODERS, report),
+                    kept=kept,
+                    is_identified=identified,
+                    model=model,
                 )
         else:
             session = read_foreign_session(session_of(args.session), lambda: report(0.0, str(args.session)))
             analysis = analyse(session, progress=report)
-            lines = export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=args.identified)
+            lines = export_from_folder(
+                session, analysis, formats, folder, kept=kept, is_identified=identified, model=model
+            )
         count = sum(path.is_file() for path in folder.rglob("*"))
     whose = "with identity" if args.identified else "pseudonymised"
     return [f"{args.out}: {count} {'file' if count == 1 else 'files'}, {whose}.", *lines]

@@ -17,6 +17,7 @@ from app.cli.arguments import (
     IMPORTED,
     KINDS,
     METHODS,
+    MODELS,
     OF_LIBRARY,
     ON_TERMINAL,
     ONE_SESSION,
@@ -174,6 +175,13 @@ def _add_export(parser: argparse.ArgumentParser) -> None:
         metavar="WHAT,...",
         default="",
         help=f"without identity, what was typed freely and leaves all the same: {', '.join(TYPED)}",
+    )
+    parser.add_argument(
+        "--model",
+        type=one_of(MODELS),
+        default=MODELS[0],
+        metavar="MODEL",
+        help=f"whose coordinates a mot has: {' | '.join(MODELS)}, whose knee flexion is negative ({MODELS[0]})",
     )
     parser.add_argument("--identified", action="store_true", help="leave code, notes, operator and dates as they are")
     where = parser.add_mutually_exclusive_group(required=True)

@@ -3,9 +3,12 @@
 Angles stand where such programs look for them: as points of the kind ANGLES, LKneeAngles and so on, of which the first
 component bends; the two others were not measured and are 0. Of a hip the second one is adduction, where that is
 reported. A C3D has one rate and no stamps, so each frame holds the row of angles.csv nearest to it, at most half a
-frame away; a frame without one, or in a gap, has residual -1. The format counts frames in 16 bits, and programs differ
-in how they count beyond (the one used here to write reads 65 535 of them back), so a longer recording goes on in
-another file.
+frame away; a frame without one, or in a gap, has residual -1. The format counts frames in 16 bits; TRIAL and
+POINT:LONG_FRAMES hold the count for programs that take them as signed. Beyond, programs differ (the one used here to
+write reads 65 535 frames back), so a longer recording goes on in another file.
+
+Many programs read only the first 255 events, so foot strikes and foot offs are before all others, each in order of
+time; the rest of a long list is in LABELS2 and so on.
 
 A joint that is not reported, or whose sign is not known, is left out. One without a zero is named as its shape, such as
 LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height from it. PROCESSING:STATUS states why.
@@ -14,11 +17,12 @@ LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height fr
 from collections.abc import Sequence
 from pathlib import Path
 from textwrap import shorten
+from typing import NamedTuple
 
 import ezc3d
 import numpy as np
 
-from app.exports.figures import SIMULATED, reported_abduction_deg, reported_deg, status_in_ascii
+from app.exports.figures import SIMULATED, in_ascii, reported_abduction_deg, reported_deg, status_in_ascii
 from app.exports.parts import part_paths
 from app.summary.events import events_of
 from app.summary.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
@@ -37,13 +41,23 @@ POINTS = {
     Joint.RIGHT_HIP: "RHipAngles",
 }
 BENDS = {JointKind.HIP: "hip flexion", JointKind.KNEE: "knee flexion", JointKind.ANKLE: "ankle dorsiflexion"}
-# what other programs call the two that bound stance; the rest have no name of their own there
+
+
+class Event(NamedTuple):
+    """What an event is called in a C3D. The two that bound stance have names and icons that all programs know."""
+
+    label: str
+    description: str
+    icon: int = 0
+
+
 EVENTS = {
-    "initial_contact": "Foot Strike",
-    "toe_off": "Foot Off",
-    "full_contact": "Full Contact",
-    "heel_rise": "Heel Rise",
+    "initial_contact": Event("Foot Strike", "The instant the heel strikes the ground", 1),
+    "toe_off": Event("Foot Off", "The instant the toe leaves the ground", 2),
+    "full_contact": Event("Full Contact", "The instant the whole foot is on the ground"),
+    "heel_rise": Event("Heel Rise", "The instant the heel leaves the ground"),
 }
+NO_CODE = "Subject"
 SHAPE = "_SHAPE"  # behind the name of an angle whose mean was taken away
 REPORTED = (*WITH_HEIGHT, NO_ZERO)
 LONGEST_TEXT = 250  # the format counts a text's letters in 8 bits
@@ -52,8 +66,11 @@ MOST_ENTRIES = 255  # and the entries of a list in 8, so a longer one goes on in
 HALF_A_FRAME = 0.5 + 1e-6
 
 
-def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
-    """Write angles and events, time from each file's first row; give why there is no file (translated), or ""."""
+def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path, code: str = "") -> str:
+    """Write angles and events of a patient of this code, time from each file's first row.
+    Give why there is no file (translated), or "".
+    """
+    subject = shorten(in_ascii(code), LONGEST_TEXT, placeholder=" ...") or NO_CODE
     status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.measured}
     joints = [joint for joint, stated in status.items() if stated in REPORTED]
     if not joints and not events_of(recording):
@@ -84,7 +101,8 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> s
         stated = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
         c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in stated])
         c3d.add_parameter("PROCESSING", "USE", [PURPOSE])
-        c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
+        _add_subject(c3d, subject)
+        _add_integers(c3d, "SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
         if is_simulated:
             c3d.add_parameter("SUBJECTS", "NOTE", [SIMULATED])
         number = first // MOST_FRAMES
@@ -92,7 +110,7 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> s
             c3d.add_parameter("PROCESSING", "PART", [1.0 + number, float(len(firsts))])
             c3d.add_parameter("PROCESSING", "PART_STARTS_S", [step_s * first])
         here = [one for one, part in zip(events, part_of, strict=True) if part == number]
-        _add_events(c3d, here, start_s + step_s * first)
+        _add_events(c3d, here, start_s + step_s * first, subject)
         place.touch()  # ezc3d reports an unwritable file in its own words
         c3d.write(str(place))
     return ""
@@ -110,6 +128,10 @@ def _angles_in_c3d(values: FloatArray, step_s: float, labels: Sequence[str], des
     c3d.add_parameter("POINT", "ANGLES", list(labels))
     c3d.add_parameter("POINT", "ANGLE_UNITS", ["deg"])
     c3d.add_parameter("MANUFACTURER", "SOFTWARE", ["gaitwright"])
+    frames = values.shape[2]
+    c3d.add_parameter("POINT", "LONG_FRAMES", [float(frames)])
+    _add_integers(c3d, "TRIAL", "ACTUAL_START_FIELD", [1, 0])
+    _add_integers(c3d, "TRIAL", "ACTUAL_END_FIELD", [frames, 0])  # two words of 16 bits, the low one first
     c3d["data"]["points"] = values
     c3d["data"]["meta_points"]["residuals"] = np.where(np.isfinite(values[0]), 0.0, -1.0)[None]
     return c3d
@@ -137,13 +159,37 @@ def _description(joint: Joint, status: str, *, has_adduction: bool) -> str:
     return f"x: {BENDS[joint.kind]}{shape}{', from standing' if joint.is_hip else ''}; {rest}"
 
 
-def _add_events(c3d: ezc3d.c3d, events: Sequence[tuple[float, Side, str]], from_s: float) -> None:
-    """Add the events of a file that begins at `from_s` on their clock."""
-    c3d.add_parameter("EVENT", "USED", [len(events)])
+def _add_subject(c3d: ezc3d.c3d, subject: str) -> None:
+    """Who the file is of, and what the sides of its events are."""
+    for name, number in (("IS_STATIC", 0), ("USES_PREFIXES", 0), ("USED", 1)):
+        _add_integers(c3d, "SUBJECTS", name, [number])
+    c3d.add_parameter("SUBJECTS", "NAMES", [subject])
+    sides = [side.capitalize() for side in Side]
+    _add_integers(c3d, "EVENT_CONTEXT", "USED", [len(sides)])
+    _add_integers(c3d, "EVENT_CONTEXT", "ICON_IDS", [0] * len(sides))
+    c3d.add_parameter("EVENT_CONTEXT", "LABELS", sides)
+    c3d.add_parameter("EVENT_CONTEXT", "DESCRIPTIONS", [f"{side} side" for side in sides])
+    c3d.add_parameter("EVENT_CONTEXT", "COLOURS", np.array([[1.0, 0.0], [0.0, 0.5], [0.0, 0.0]]))  # red and green
+
+
+def _add_events(c3d: ezc3d.c3d, events: Sequence[tuple[float, Side, str]], from_s: float, subject: str) -> None:
+    """Add the events of a file that begins at `from_s` on their clock; strikes and offs first."""
+    events = sorted(events, key=lambda one: (EVENTS[one[2]].icon == 0, one[0]))
+    _add_integers(c3d, "EVENT", "USED", [len(events)])
     for number, first in enumerate(range(0, len(events), MOST_ENTRIES), start=1):
         some = events[first : first + MOST_ENTRIES]
-        end = str(number) if number > 1 else ""
+        known, end = [EVENTS[event] for _, _, event in some], str(number) if number > 1 else ""
         c3d.add_parameter("EVENT", f"CONTEXTS{end}", [side.capitalize() for _, side, _ in some])
-        c3d.add_parameter("EVENT", f"LABELS{end}", [EVENTS[event] for _, _, event in some])
+        c3d.add_parameter("EVENT", f"LABELS{end}", [one.label for one in known])
+        c3d.add_parameter("EVENT", f"DESCRIPTIONS{end}", [one.description for one in known])
+        c3d.add_parameter("EVENT", f"SUBJECTS{end}", [subject] * len(some))
         minutes_seconds = np.array([divmod(time_s - from_s, 60.0) for time_s, _, _ in some]).T
         c3d.add_parameter("EVENT", f"TIMES{end}", minutes_seconds)
+        _add_integers(c3d, "EVENT", f"ICON_IDS{end}", [one.icon for one in known])
+        _add_integers(c3d, "EVENT", f"GENERIC_FLAGS{end}", [0] * len(known))  # not from force plates
+
+
+def _add_integers(c3d: ezc3d.c3d, group: str, name: str, values: Sequence[int]) -> None:
+    """Add whole numbers as such: the library makes numbers with a fraction of a list of them."""
+    c3d.add_parameter(group, name, list(values))
+    c3d["parameters"][group][name]["type"] = ezc3d.ezc3d.INT

@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from uuid import UUID
@@ -13,7 +14,8 @@ from uuid import UUID
 from app.exports.bids_motion import FOLDER, write_bids
 from app.exports.fhir_bundle import write_bundle
 from app.exports.folder_pseudonyms import pseudonyms_of_folder
-from app.exports.opensim_motion import write_motion
+from app.exports.opensim_motion import Model, write_motion
+from app.exports.opensim_orientations import write_orientations
 from app.exports.pseudonymised import Row, pseudonymised, what_leaves
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
@@ -33,6 +35,7 @@ class Format(StrEnum):
     XLSX = "xlsx"
     C3D = "c3d"
     MOT = "mot"
+    STO = "sto"
     FHIR = "fhir"
     BIDS = "bids-motion"
 
@@ -62,6 +65,7 @@ def export_from_folder(
     *,
     kept: Collection[Typed] = (),
     is_identified: bool = False,
+    model: Model = Model.RAJAGOPAL2016,
 ) -> list[str]:
     """Write an unstored session into an existing folder, each format whole or not at all; give what failed.
     Without identity, only freely typed words in `kept` leave. Raises FileRefusedError, OSError.
@@ -69,7 +73,7 @@ def export_from_folder(
     check_formats(formats)
     if not is_identified:
         session, analysis = pseudonymised(*pseudonyms_of_folder(session), session, analysis, kept)
-    return _write(session, analysis, formats, folder)
+    return _write(session, analysis, formats, folder, model)
 
 
 def export_from_library(
@@ -83,6 +87,7 @@ def export_from_library(
     analysed: Callable[[Session], Analysis] = analyse,
     kept: Collection[Typed] = (),
     is_identified: bool = False,
+    model: Model = Model.RAJAGOPAL2016,
 ) -> list[str]:
     """Analyse and write a session of the library, noted in the audit first; give what failed and why.
     Without identity, only freely typed words in `kept` leave, and the audit names them.
@@ -102,7 +107,7 @@ def export_from_library(
         pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
         session, analysis = pseudonymised(pseudonyms, visit.patient_id, session, analysis, kept)
     report(1.0, "writing")
-    return _write(session, analysis, formats, folder)
+    return _write(session, analysis, formats, folder, model)
 
 
 def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[Row]:
@@ -120,13 +125,13 @@ def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collecti
     return what_leaves(Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, reported, kept))
 
 
-def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path) -> list[str]:
+def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path, model: Model) -> list[str]:
     """Write each format beside, then move its files into their places, so that none is half there."""
     lines, failed = list[str](), list[FileRefusedError]()
     for required in formats:
         with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as beside:
             try:
-                lines += _write_format(session, analysis, required, Path(beside))
+                lines += _write_format(session, analysis, required, Path(beside), model)
             except (OSError, MemoryError):
                 raise
             except Exception as error:  # a format's edge: whatever its library raises, the other formats are written
@@ -149,7 +154,7 @@ def _write(session: Session, analysis: Analysis, formats: Sequence[Format], fold
     return [*(f"{one.where}: {filled(one.what, one.values)}" for one in failed), *lines]
 
 
-def _write_format(session: Session, analysis: Analysis, required: Format, folder: Path) -> list[str]:
+def _write_format(session: Session, analysis: Analysis, required: Format, folder: Path, model: Model) -> list[str]:
     """Write one format, and give a line for each file that is not written."""
     if required is Format.XLSX:
         from app.exports.spreadsheet import write_spreadsheet  # openpyxl, which may be missing
@@ -157,14 +162,19 @@ def _write_format(session: Session, analysis: Analysis, required: Format, folder
         write_spreadsheet(session, analysis, folder / SPREADSHEET)
     elif required is Format.FHIR:
         write_bundle(session, analysis, folder / BUNDLE)
+    elif required is Format.STO:
+        lines = write_orientations(session, analysis, folder, f"orientations.{required}")
+        return [f"{required}, {line}" for line in lines]
     elif required is Format.BIDS:
         why = write_bids(session, folder / FOLDER)
         return [f"{required}: {why}"] if why else []
     else:
         if required is Format.C3D:
-            from app.exports.c3d_angles import write_c3d as write  # ezc3d, which may be missing
+            from app.exports.c3d_angles import write_c3d  # ezc3d, which may be missing
+
+            write = partial(write_c3d, code=session.patient.code)
         else:
-            write = write_motion
+            write = partial(write_motion, model=model)
 
         found = {
             one.name: write(one, analysis.is_simulated, _place(one, folder, f"angles.{required}"))

@@ -1,21 +1,44 @@
-"""Averages in a form that a hospital's system reads. A FHIR R4 Bundle of Observations, one per figure of summary.json.
+"""Averages in a form that a hospital's system takes. A FHIR R4 transaction of one Observation per figure.
 
 A figure that is to be read with care, or that fewer than ten strides made, is preliminary and states why. One that is
-not reported has no value and its reason in place of it; nothing is ever called high, low or normal. Goals are Goals.
-Our figures have no codes of their own in LOINC or SNOMED CT that say how they were measured, so each is coded by its
-column's name; sides are coded. Simulated figures carry the label that HL7 gives to test data.
+not reported has no value and its reason in place of it; nothing is ever called high, low or normal. Goals are Goals,
+what made the figures is a Device, and a DiagnosticReport holds them together. Simulated figures carry the label that
+HL7 gives to test data.
+
+Posted again, figures replace what they were: each is looked for by its identifier. A patient whom the server knows by
+the code is left as it is.
 """
 
-import datetime
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-from uuid import NAMESPACE_URL, uuid5
 
+from app.exports.fhir_codes import (
+    ACTIVITY,
+    LEGS,
+    NOT_PERFORMED,
+    NOT_REPORTED,
+    PATIENTS,
+    PHYSICAL_THERAPY,
+    SIDES,
+    TEST_DATA,
+    UCUM,
+    URIS,
+    YEARS_OLD,
+    Resource,
+    code_of,
+    instant,
+    quantity,
+    search_of,
+    urn,
+)
+from app.exports.fhir_timed import test_observation
 from app.exports.figures import SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
+from app.exports.folder_pseudonyms import identity_of
+from app.exports.timed_csv import timed_walks
 from app.storage.pseudonyms import AGE
 from app.summary.agreed import agreed_with
 from app.summary.comparison import compare_legs, first_and_second
@@ -31,31 +54,11 @@ from core.results import Analysis
 from core.session import Session
 from core.verdicts.model import Verdict
 
-PARAMETERS = "urn:x-gaitwright:parameter"
-CODES = "urn:x-gaitwright:patient"
-UCUM = "http://unitsofmeasure.org"
-UCUM_OF = {"°": "deg", "%": "%", "s": "s", "m": "m", "m/s": "m/s", "steps/min": "/min"}
-SNOMED = "http://snomed.info/sct"
-LEG = {"system": SNOMED, "code": "61685007", "display": "Lower limb structure"}
-SIDES = {
-    Side.LEFT: {"system": SNOMED, "code": "7771000", "display": "Left"},
-    Side.RIGHT: {"system": SNOMED, "code": "24028007", "display": "Right"},
-}
-CATEGORY = "http://terminology.hl7.org/CodeSystem/observation-category"
-ACTIVITY = [{"coding": [{"system": CATEGORY, "code": "activity", "display": "Activity"}]}]
-TEST_DATA = {
-    "system": "http://terminology.hl7.org/CodeSystem/v3-ActReason",
-    "code": "HTEST",
-    "display": "test health data",
-}
-ABSENT = "http://terminology.hl7.org/CodeSystem/data-absent-reason"
-NOT_REPORTED = {"system": ABSENT, "code": "error", "display": "Error"}
-NOT_PERFORMED = {"system": ABSENT, "code": "not-performed", "display": "Not Performed"}
 SPREAD = "standard deviation between strides"
 ERROR = "half of what the difference of two walks with the sensors left on has to exceed (95 %)"
-YEARS_OLD = {"system": "http://loinc.org", "code": "30525-0", "display": "Age"}
 AGE_REPORTED = re.compile(r"(\d{1,3})(\+?)")
 GENDERS = ("male", "female", "other")
+PATIENT, DEVICE = "Patient", "Device"
 
 
 def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
@@ -64,138 +67,199 @@ def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
-def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
-    """Give a collection Bundle: the patient as reported, the goals agreed, and an Observation per figure."""
-    patient_url = _url(session, "patient")
-    resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
-    resources += [(_url(session, "goal", *goal.key), _goal(goal, patient_url)) for goal in agreed_with(session).held]
-    conditions = {recording.name: recording.condition for recording in session.recordings}
-    started = {recording.name: recording.started or session.started for recording in session.recordings}
-    for one in walk_figures(analysis):
-        when = _when(started.get(one.walk, ""))
-        url = _url(session, one.walk, str(one.side), one.name)
-        notes = [*_notes(one.walk, conditions.get(one.walk, "")), *([SIMULATED] if analysis.is_simulated else [])]
-        resources.append((url, dict(_observation(one, patient_url, when, notes))))
-    resources += _between_legs(session, analysis, patient_url)
-    if analysis.is_simulated:
-        resources = [(url, {**resource, "meta": {"security": [TEST_DATA]}}) for url, resource in resources]
-    return {
-        "resourceType": "Bundle",
-        "type": "collection",
-        "entry": [{"fullUrl": url, "resource": resource} for url, resource in resources],
-    }
+def bundle(session: Session, analysis: Analysis) -> Resource:
+    """Give a transaction: the patient as reported, device, goals, an Observation per figure, and their report."""
+    return _Bundle(session, analysis).transaction()
 
 
-def _patient(session: Session) -> dict[str, Any]:
-    patient = session.patient
-    reported: dict[str, Any] = {"resourceType": "Patient"}
-    if patient.code.strip():
-        reported["identifier"] = [{"system": CODES, "value": patient.code.strip()}]
-    if patient.sex in GENDERS:
-        reported["gender"] = patient.sex
-    if patient.birth_year is not None:
-        reported["birthDate"] = f"{patient.birth_year:04d}"
-    return reported
+class _Bundle:
+    """The resources of one session, each under a name that is the same at every writing."""
 
+    def __init__(self, session: Session, analysis: Analysis) -> None:
+        self._session, self._analysis = session, analysis
+        code, started = session.patient.code.strip(), session.started
+        # without code or date two sessions would have the same names, and the one replace the other
+        self._visit = (code, started) if code and started else (code, started, identity_of(session).hex)
+        self._patient_url, self._device_url = self._url("patient"), urn("device", software())
+        self._subject = {"subject": {"reference": self._patient_url}}
+        self._device = {"device": {"reference": self._device_url, "display": software()}}
 
-def _age(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The age at the visit, where it is given in place of the year of birth."""
-    reported = str(session.patient.unknown.get(AGE, ""))
-    if (found := AGE_REPORTED.fullmatch(reported)) is None:
-        return
-    value: dict[str, Any] = {"value": int(found[1]), "unit": "years", "system": UCUM, "code": "a"}
-    if found[2]:
-        value = {"value": value.pop("value"), "comparator": ">=", **value}
-    observation = {"resourceType": "Observation", "status": "final", "code": {"coding": [YEARS_OLD], "text": "age"}}
-    yield _url(session, "age"), {**observation, "subject": {"reference": patient_url}, "valueQuantity": value}
+    def transaction(self) -> Resource:
+        observations = [*self._age(), *self._figures(), *self._between_legs(), *self._tests()]
+        goals = [(self._url("goal", *one.key), self._goal(one)) for one in agreed_with(self._session).held]
+        resources = [(self._patient_url, self._patient()), (self._device_url, self._software()), *goals, *observations]
+        resources.append((self._url("report"), self._report(observations)))
+        return {
+            "resourceType": "Bundle",
+            "type": "transaction",
+            "entry": [self._entry(url, resource) for url, resource in resources],
+        }
 
+    def _url(self, *parts: str) -> str:
+        return urn(*self._visit, *parts)
 
-def _goal(goal: Goal, patient_url: str) -> dict[str, Any]:
-    """What had been agreed by the session's day. Whether it is reached is left to who reads the figures."""
-    unit = unit_of(goal.column)
-    code = _code(goal.column, f"{goal.column}, {goal.of}".replace("_", " "))
-    limit = {**_quantity(goal.value, unit), "comparator": "<=" if goal.is_at_most else ">="}
-    target: dict[str, Any] = {"measure": code, "detailQuantity": limit}
-    if goal.until is not None:
-        target["dueDate"] = goal.until.isoformat()
-    reported: dict[str, Any] = {
-        "resourceType": "Goal",
-        "lifecycleStatus": "active",
-        "description": {"text": goal_in_words(goal)},
-        "subject": {"reference": patient_url},
-        "startDate": goal.agreed.isoformat(),
-        "target": [target],
-    }
-    if goal.by:
-        reported["expressedBy"] = {"display": goal.by}
-    if goal.note:
-        reported["note"] = [{"text": goal.note}]
-    return reported
+    def _entry(self, url: str, resource: Resource) -> Resource:
+        kind = resource["resourceType"]
+        resource.setdefault("identifier", [{"system": URIS, "value": url}])
+        if self._analysis.is_simulated:
+            resource["meta"] = {"security": [TEST_DATA]}
+        known = search_of(resource["identifier"][0])
+        request = {"method": "PUT", "url": f"{kind}?{known}"}
+        if kind in (PATIENT, DEVICE):
+            request = {"method": "POST", "url": kind, "ifNoneExist": known}
+        return {"fullUrl": url, "resource": resource, "request": request}
 
+    def _patient(self) -> Resource:
+        patient = self._session.patient
+        reported: Resource = {"resourceType": PATIENT}
+        if patient.code.strip():
+            reported["identifier"] = [{"system": PATIENTS, "value": patient.code.strip()}]
+        if patient.sex in GENDERS:
+            reported["gender"] = patient.sex
+        if patient.birth_year is not None:
+            reported["birthDate"] = f"{patient.birth_year:04d}"
+        return reported
 
-def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:
-    yield "resourceType", "Observation"
-    yield "status", _status(one)
-    yield "category", ACTIVITY
-    yield "code", _code(one.name)
-    yield "subject", {"reference": patient_url}
-    if when:
-        yield "effectiveDateTime", when
-    if one.mean is None:
-        is_worn = one.assessment.verdict is Verdict.NOT_REPORTED
-        why_not = {"coding": [NOT_REPORTED if is_worn else NOT_PERFORMED], "text": reason_of(one.assessment)}
-        yield "dataAbsentReason", why_not
-    else:
-        yield "valueQuantity", _quantity(one.mean, unit_of(one.name))
-    doubts = [gate_sentence(reason) for reason in one.assessment.reasons]
-    yield "note", [{"text": text} for text in dict.fromkeys([*notes, *doubts])]
-    if one.side is not None:
-        yield "bodySite", {"coding": [LEG], "text": f"{one.side} leg"}
-    yield "device", {"display": software()}
-    components: list[dict[str, Any]] = []
-    if one.side is not None:
-        components.append({"code": _code("side"), "valueCodeableConcept": {"coding": [SIDES[one.side]]}})
-    for name, words, value in (("stride_sd", SPREAD, one.average.sd), ("error", ERROR, one.average.error)):
-        if math.isfinite(value):
-            quantity = _quantity(float(value), unit_of(one.name))
-            components.append({"code": _code(name, words), "valueQuantity": quantity})
-    if one.strides is not None:
-        components.append({"code": _code("strides_used"), "valueInteger": one.strides})
-    if components:
-        yield "component", components
+    def _software(self) -> Resource:
+        name, _, number = software().partition(" ")
+        return {
+            "resourceType": DEVICE,
+            "status": "active",
+            "deviceName": [{"name": name, "type": "user-friendly-name"}],
+            "type": {"text": "Software for gait analysis with inertial sensors"},
+            **({"version": [{"value": number}]} if number else {}),
+            "note": [{"text": PURPOSE}],
+        }
 
+    def _report(self, observations: list[tuple[str, Resource]]) -> Resource:
+        """All that was measured in the visit; final where every part of it is."""
+        measured = [resource["status"] for _, resource in observations if resource["status"] != "cancelled"]
+        return {
+            "resourceType": "DiagnosticReport",
+            "status": "final" if set(measured) <= {"final"} else "preliminary",
+            "category": PHYSICAL_THERAPY,
+            "code": code_of("gait_analysis", "Gait analysis with inertial sensors"),
+            **self._subject,
+            **_when(self._session.started),
+            "result": [{"reference": url} for url, _ in observations],
+        }
 
-def _between_legs(session: Session, analysis: Analysis, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """One Observation for each measure that the legs of a condition are compared in, with its likely interval."""
-    sides = first_and_second(analysis.affected_side)
-    for part in conditions_of(analysis, session.recordings, agreed=agreed_with(session)):
-        for column in BETWEEN_LEGS if len(part.sides) == len(Side) else ():
-            found, unit = compare_legs(part, column, sides), unit_of(column)
-            if not found.is_reported:
-                continue
-            ends = {key: value for key, value in likely_figures(found).items() if math.isfinite(value)}
-            components: list[dict[str, Any]] = [
-                {"code": _code(key), "valueQuantity": _quantity(value, unit)} for key, value in ends.items()
-            ]
-            if found.mark:
-                components.append({"code": _code("mark"), "valueString": str(found.mark)})
-            is_final = all(part.assessment(side, column).verdict is Verdict.READ for side in sides)
-            yield (
-                _url(session, part.letter, part.name, "legs", column),
-                {
-                    "resourceType": "Observation",
-                    "status": "final" if is_final and found.is_judged else "preliminary",
-                    "category": ACTIVITY,
-                    "code": _code(f"{column}_difference", f"{column}, {sides[0]} less {sides[1]}".replace("_", " ")),
-                    "subject": {"reference": patient_url},
-                    **({"effectiveDateTime": when} if (when := _when(session.started)) else {}),
-                    "valueQuantity": _quantity(found.difference, unit),
-                    "note": [{"text": text} for text in (part.name or part.letter, PURPOSE)]
-                    + ([{"text": SIMULATED}] if analysis.is_simulated else []),
-                    "device": {"display": software()},
-                    **({"component": components} if components else {}),
-                },
-            )
+    def _age(self) -> Iterator[tuple[str, Resource]]:
+        """The age at the visit, where it is given in place of the year of birth."""
+        if (found := AGE_REPORTED.fullmatch(str(self._session.patient.unknown.get(AGE, "")))) is None:
+            return
+        value: Resource = {"value": int(found[1]), "unit": "years", "system": UCUM, "code": "a"}
+        if found[2]:
+            value = {"value": value.pop("value"), "comparator": ">=", **value}
+        code = {"code": {"coding": [YEARS_OLD], "text": "age"}}
+        head: Resource = {"resourceType": "Observation", "status": "final", **code, **self._subject}
+        yield self._url("age"), {**head, **_when(self._session.started), "valueQuantity": value}
+
+    def _goal(self, goal: Goal) -> Resource:
+        """What had been agreed by the session's day. Whether it is reached is left to who reads the figures."""
+        code = code_of(goal.column, f"{goal.column}, {goal.of}".replace("_", " "))
+        limit = {**quantity(goal.value, unit_of(goal.column)), "comparator": "<=" if goal.is_at_most else ">="}
+        target: Resource = {"measure": code, "detailQuantity": limit}
+        if goal.until is not None:
+            target["dueDate"] = goal.until.isoformat()
+        reported: Resource = {
+            "resourceType": "Goal",
+            "lifecycleStatus": "active",
+            "description": {"text": goal_in_words(goal)},
+            **self._subject,
+            "startDate": goal.agreed.isoformat(),
+            "target": [target],
+        }
+        if goal.by:
+            reported["expressedBy"] = {"display": goal.by}
+        if goal.note:
+            reported["note"] = [{"text": goal.note}]
+        return reported
+
+    def _figures(self) -> Iterator[tuple[str, Resource]]:
+        for one in walk_figures(self._analysis):
+            yield self._url(one.walk, str(one.side), one.name), dict(self._figure(one))
+
+    def _figure(self, one: WalkFigure) -> Iterator[tuple[str, Any]]:
+        yield "resourceType", "Observation"
+        yield "status", _status(one)
+        yield "category", ACTIVITY
+        yield "code", code_of(one.name, side=one.side)
+        yield from self._of_walk(one.walk)
+        if one.mean is None:
+            is_worn = one.assessment.verdict is Verdict.NOT_REPORTED
+            why_not = {"coding": [NOT_REPORTED if is_worn else NOT_PERFORMED], "text": reason_of(one.assessment)}
+            yield "dataAbsentReason", why_not
+        else:
+            yield "valueQuantity", quantity(one.mean, unit_of(one.name))
+        doubts = [gate_sentence(reason) for reason in one.assessment.reasons]
+        yield "note", self._notes(self._walk_words(one.walk), *doubts)
+        if one.side is not None:
+            yield "bodySite", {"coding": [LEGS[one.side]], "text": f"{one.side} leg"}
+        components: list[Resource] = []
+        if one.side is not None:
+            components.append({"code": code_of("side"), "valueCodeableConcept": {"coding": [SIDES[one.side]]}})
+        for name, words, value in (("stride_sd", SPREAD, one.average.sd), ("error", ERROR, one.average.error)):
+            if math.isfinite(value):
+                components.append({"code": code_of(name, words), "valueQuantity": quantity(value, unit_of(one.name))})
+        if one.strides is not None:
+            components.append({"code": code_of("strides_used"), "valueInteger": one.strides})
+        if components:
+            yield "component", components
+
+    def _of_walk(self, name: str) -> Iterator[tuple[str, Any]]:
+        """Of whom, when and by what an Observation of a walk is."""
+        started = next((one.started for one in self._session.recordings if one.name == name), "")
+        yield from {**self._subject, **_when(started or self._session.started), **self._device}.items()
+
+    def _walk_words(self, name: str) -> str:
+        condition = next((one.condition for one in self._session.recordings if one.name == name), "")
+        return f"{name}, {condition}" if condition.strip() else name
+
+    def _notes(self, first: str, *more: str) -> list[Resource]:
+        simulated = [SIMULATED] if self._analysis.is_simulated else []
+        return [{"text": text} for text in dict.fromkeys([first, PURPOSE, *simulated, *more])]
+
+    def _between_legs(self) -> Iterator[tuple[str, Resource]]:
+        """One Observation for each measure that the legs of a condition are compared in, with its likely interval."""
+        session, sides = self._session, first_and_second(self._analysis.affected_side)
+        for part in conditions_of(self._analysis, session.recordings, agreed=agreed_with(session)):
+            for column in BETWEEN_LEGS if len(part.sides) == len(Side) else ():
+                found, unit = compare_legs(part, column, sides), unit_of(column)
+                if not found.is_reported:
+                    continue
+                ends = {key: value for key, value in likely_figures(found).items() if math.isfinite(value)}
+                components: list[Resource] = [
+                    {"code": code_of(key), "valueQuantity": quantity(value, unit)} for key, value in ends.items()
+                ]
+                if found.mark:
+                    components.append({"code": code_of("mark"), "valueString": str(found.mark)})
+                is_final = all(part.assessment(side, column).verdict is Verdict.READ for side in sides)
+                words = f"{column}, {sides[0]} less {sides[1]}".replace("_", " ")
+                yield (
+                    self._url(part.letter, part.name, "legs", column),
+                    {
+                        "resourceType": "Observation",
+                        "status": "final" if is_final and found.is_judged else "preliminary",
+                        "category": ACTIVITY,
+                        "code": code_of(f"{column}_difference", words),
+                        **self._subject,
+                        **_when(session.started),
+                        "valueQuantity": quantity(found.difference, unit),
+                        "note": self._notes(part.name or part.letter),
+                        **self._device,
+                        **({"component": components} if components else {}),
+                    },
+                )
+
+    def _tests(self) -> Iterator[tuple[str, Resource]]:
+        """One Observation for each timed test."""
+        for walk in timed_walks(self._analysis):
+            assert walk.timed is not None
+            observation, reasons = test_observation(walk, walk.timed)
+            head = {"resourceType": "Observation", "category": ACTIVITY, **dict(self._of_walk(walk.name))}
+            notes = {"note": self._notes(self._walk_words(walk.name), *reasons)}
+            yield self._url(walk.name, "test"), {**head, **observation, **notes}
 
 
 def _status(one: WalkFigure) -> str:
@@ -205,29 +269,5 @@ def _status(one: WalkFigure) -> str:
     return "final" if one.assessment.verdict is Verdict.READ else "preliminary"
 
 
-def _notes(walk: str, condition: str) -> Iterator[str]:
-    yield f"{walk}, {condition}" if condition.strip() else walk
-    yield PURPOSE
-
-
-def _code(name: str, words: str = "") -> Mapping[str, Any]:
-    return {"coding": [{"system": PARAMETERS, "code": name}], "text": words or name.replace("_", " ")}
-
-
-def _quantity(value: float, unit: str) -> Mapping[str, Any]:
-    return {"value": value, "unit": unit, "system": UCUM, "code": UCUM_OF[unit]}
-
-
-def _when(started: str) -> str:
-    """An instant as FHIR takes it: with a time only where its zone is given."""
-    try:
-        instant = datetime.datetime.fromisoformat(started)
-    except ValueError:
-        return ""
-    return instant.isoformat(timespec="seconds") if instant.tzinfo else instant.date().isoformat()
-
-
-def _url(session: Session, *parts: str) -> str:
-    """The same name for the same figure at every writing."""
-    whole = json.dumps([session.patient.code, session.started, *parts])
-    return f"urn:uuid:{uuid5(NAMESPACE_URL, whole)}"
+def _when(started: str) -> Resource:
+    return {"effectiveDateTime": when} if (when := instant(started)) else {}

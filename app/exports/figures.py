@@ -108,6 +108,10 @@ def reported_abduction_deg(recording: RecordingAnalysis, joint: Joint) -> FloatA
 def status_in_ascii(recording: RecordingAnalysis, joint: Joint) -> str:
     """A joint's status and why, in letters that every format takes."""
     status, reasons = joint_status(recording, joint) or "not_measured", why_status(recording, joint)
-    reported = f"{status}: {reasons}" if reasons else status
-    plain = unicodedata.normalize("NFKD", reported.translate(IN_ASCII))
+    return in_ascii(f"{status}: {reasons}" if reasons else status)
+
+
+def in_ascii(text: str) -> str:
+    """The letters of a text without their accents."""
+    plain = unicodedata.normalize("NFKD", text.translate(IN_ASCII))
     return plain.encode("ascii", "ignore").decode("ascii")

@@ -27,10 +27,11 @@ def key_file() -> Path:
 
 def pseudonyms_of_folder(session: Session) -> tuple[Pseudonyms, UUID]:
     """Give the pseudonyms of this computer, and what identifies the patient of a session with its samples."""
-    return Pseudonyms(_key(key_file())), _identity(session)
+    return Pseudonyms(_key(key_file())), identity_of(session)
 
 
-def _identity(session: Session) -> UUID:
+def identity_of(session: Session) -> UUID:
+    """What its sensors measured, in a name: the same for the same samples."""
     digest = hashlib.sha256()
     for recording in session.recordings:
         for site, block in sorted(recording.imu.items()):

@@ -1,14 +1,16 @@
 """Angles for OpenSim: a motion file (.mot) per recording, in degrees, named as a model's coordinates.
 
-The names and signs are those of models whose knee flexion is positive, as Rajagopal et al. 2016, doi
-10.1109/TBME.2016.2586891; in gait2392 the knee has the other sign, hips and pelvis the same one. There x points
-forward, y up and z to the right: `pelvis_tilt` turns about z and is negative forward, `pelvis_list` about x and is
-positive where the left side is the higher one. A model takes a coordinate for a pose, so one whose height or sign is
-not known is left out, and a comment states why.
+Names, signs and limits are those of one model, which the head names: Rajagopal et al. 2016, doi
+10.1109/TBME.2016.2586891, or gait2392 of Delp et al. 1990, doi 10.1109/10.102791, where knee flexion is negative; hips
+and pelvis have the same signs in both. There x points forward, y up and z to the right: `pelvis_tilt` turns about z and
+is negative forward, `pelvis_list` about x and is positive where the left side is the higher one. A model takes a
+coordinate for a pose, so one whose height or sign is not known is left out, and a comment states why. What lies beyond
+a coordinate's range is kept at its limit, and a comment states how far it was beyond.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from itertools import pairwise
 from pathlib import Path
 
@@ -33,6 +35,50 @@ COORDINATES = {
 }
 BRIDGED_S = 0.1  # a joint's angle goes straight on for so long
 SHORTEST_S = 0.5  # of what is worth a file
+
+
+class Model(StrEnum):
+    """A model whose coordinates a motion file is for."""
+
+    RAJAGOPAL2016 = "rajagopal2016"
+    GAIT2392 = "gait2392"
+
+
+@dataclass(frozen=True, slots=True)
+class Coordinates:
+    """What a model's coordinates mean. `knee`: 1 where flexion is positive; `limits_deg`: by name without side."""
+
+    words: str
+    knee: float
+    limits_deg: Mapping[str, tuple[float, float]]
+
+
+# the ranges of Rajagopal2016.osim and gait2392_thelen2003muscle.osim, as OpenSim's collection of models has them
+OF_PELVIS = {"pelvis_tilt": (-90.0, 90.0), "pelvis_list": (-90.0, 90.0)}
+MODELS = {
+    Model.RAJAGOPAL2016: Coordinates(
+        "Rajagopal 2016 (Rajagopal2016.osim): knee flexion is positive",
+        1.0,
+        {
+            "knee_angle": (0.0, 120.0),
+            "ankle_angle": (-40.0, 30.0),
+            "hip_flexion": (-30.0, 120.0),
+            "hip_adduction": (-50.0, 30.0),
+            **OF_PELVIS,
+        },
+    ),
+    Model.GAIT2392: Coordinates(
+        "gait2392 (gait2392_thelen2003muscle.osim and others of this name): knee flexion is negative",
+        -1.0,
+        {
+            "knee_angle": (-120.0, 10.0),
+            "ankle_angle": (-90.0, 90.0),
+            "hip_flexion": (-120.0, 120.0),
+            "hip_adduction": (-120.0, 120.0),
+            **OF_PELVIS,
+        },
+    ),
+}
 ADDUCTION = {Joint.RIGHT_HIP: "hip_adduction_r", Joint.LEFT_HIP: "hip_adduction_l"}
 OF_HIPS = (
     "Hip flexion and adduction are positive; pelvis_tilt is negative forward, pelvis_list positive with the left side "
@@ -49,16 +95,23 @@ class MotionPart:
     names: tuple[str, ...]
 
 
-def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
+def write_motion(
+    recording: RecordingAnalysis, is_simulated: bool, path: Path, model: Model = Model.RAJAGOPAL2016
+) -> str:
     """Write one recording's known angles as .mot files; give why there is none (translated), else "".
     OpenSim stops at NaN, so short gaps are bridged; at others another file begins (`angles_1.mot`).
     """
+    of_model = MODELS[model]
     measured = [joint for joint in COORDINATES if joint in recording.measured]
     joints = [joint for joint in measured if joint_status(recording, joint) in WITH_HEIGHT]
-    bending = {COORDINATES[joint]: reported_deg(recording, joint) for joint in joints}
+    bending = {
+        COORDINATES[joint]: (of_model.knee if joint.is_knee else 1.0) * reported_deg(recording, joint) + 0.0
+        for joint in joints
+    }
     found = {**bending, **_of_hips_and_pelvis(recording)}
-    columns = {name: _bridged(recording.time_s, values) for name, values in found.items()}
-    parts = _parts(recording.time_s, columns)
+    limits_deg = {name: of_model.limits_deg[name.removesuffix("_r").removesuffix("_l")] for name in found}
+    columns = {name: _bridged(recording.time_s, np.clip(values, *limits_deg[name])) for name, values in found.items()}
+    parts = known_parts(recording.time_s, columns)
     if not parts:
         reasons = [why_status(recording, joint) for joint in measured if joint not in joints]
         return " ".join([tr("This recording has no angle to export as a pose."), *dict.fromkeys(filter(None, reasons))])
@@ -66,7 +119,8 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
         "",
         *([SIMULATED] if is_simulated else []),
         f"Made by gaitwright. {PURPOSE}",
-        "Knee flexion and ankle dorsiflexion are positive. What is named nowhere in this file was not measured.",
+        f"For models with the coordinates of {of_model.words}, ankle dorsiflexion positive.",
+        "What is named nowhere in this file was not measured.",
         *([OF_HIPS] if recording.hips else []),
         *(f"{COORDINATES[joint]} is {_stated(recording, joint, joint in joints)}" for joint in measured),
     ]
@@ -77,6 +131,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
         for name in part.names:
             count = int(np.count_nonzero(~np.isfinite(found[name][part.rows])))
             about += [f"{name} is interpolated over gaps of up to {BRIDGED_S:g} s, {count} rows."] if count else []
+            about += _beyond_limits(name, found[name][part.rows], limits_deg[name])
         _write_part(place, time_s, {name: columns[name][part.rows] for name in part.names}, [*header, *about])
     return ""
 
@@ -99,6 +154,18 @@ def _write_part(path: Path, time_s: FloatArray, columns: Mapping[str, FloatArray
             file.write("\t".join([repr(float(at_s)), *cells]) + "\n")
 
 
+def _beyond_limits(name: str, values_deg: FloatArray, limits_deg: tuple[float, float]) -> list[str]:
+    """How often and how far a coordinate was beyond each of the model's limits, at which it is kept."""
+    lines = []
+    for limit_deg, beyond_deg in zip(limits_deg, (limits_deg[0] - values_deg, values_deg - limits_deg[1]), strict=True):
+        if count := int(np.count_nonzero(beyond_deg > 0)):
+            most_deg = float(np.nanmax(beyond_deg))
+            lines.append(
+                f"Kept at the model's limit of {limit_deg:g} deg: {name}, {count} rows, up to {most_deg:.1f} deg beyond."
+            )
+    return lines
+
+
 def _bridged(time_s: FloatArray, values: FloatArray) -> FloatArray:
     """The same (n,), straight over what is missing for no longer than `BRIDGED_S`."""
     known = np.flatnonzero(np.isfinite(values))
@@ -111,7 +178,7 @@ def _bridged(time_s: FloatArray, values: FloatArray) -> FloatArray:
     return bridged
 
 
-def _parts(time_s: FloatArray, columns: Mapping[str, FloatArray]) -> list[MotionPart]:
+def known_parts(time_s: FloatArray, columns: Mapping[str, FloatArray]) -> list[MotionPart]:
     """Where the same coordinates are known, without a gap, for as long as is worth a file."""
     if not columns or len(time_s) < 2:
         return []

@@ -4,7 +4,8 @@ Lines of a head up to `endheader`, a line of names, then a time in seconds and f
 between, scalar first: earth from sensor, earth z up, as OpenSim's own readers of sensors write them. Rates are derived
 from them. There is no acceleration: gravity takes its place, which shows the shape of angles and no landing of a foot.
 
-Not held against a real file: read as OpenSim's documentation describes it.
+A line of the head that begins with SIMULATED, as `gaitwright export` writes it, states that nobody was measured.
+Held against tables that OpenSim itself wrote and read, and against our own exports.
 """
 
 import re
@@ -24,6 +25,7 @@ from devices.files.trial import ImportedSensor, ImportedTrial
 END_OF_HEAD = b"endheader"
 KIND = re.compile(rb"^\s*DataType\s*=\s*Quaternion\s*$", re.MULTILINE | re.IGNORECASE)
 TIME = "time"
+SIMULATED = "SIMULATED"
 LONGEST_LINE = 100_000  # bytes
 HEAD_WITHIN = 100  # lines
 ROTATION_ERROR = 0.01
@@ -39,6 +41,7 @@ class OrientationTable:
     sensors: tuple[str, ...]
     q_earth_from_sensor: FloatArray
     of_clock: tuple[Finding, ...]
+    is_simulated: bool = False
 
 
 def is_opensim_orientations(_path: Path, head: bytes) -> bool:
@@ -53,7 +56,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
     names: list[str] = []
     rows: list[list[float]] = []
     lines: list[int] = []
-    has_head = False
+    has_head, is_simulated = False, False
     with path.open("rb") as file:
         for number, raw in enumerate(iter(lambda: file.readline(LONGEST_LINE), b""), 1):
             here = f"{where}, line {number}"
@@ -63,6 +66,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
                 raise FileRefusedError(here, "the file is not UTF-8 text", EXPORT_AGAIN) from error
             if not has_head:
                 has_head = text == END_OF_HEAD.decode()
+                is_simulated |= text.startswith(SIMULATED)
                 if number > HEAD_WITHIN:
                     break
             elif text in ("", END_OF_HEAD.decode()):  # which some writers repeat
@@ -83,7 +87,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
         line = lines[int(np.argmax(is_wrong))]
         raise FileRefusedError(f"{where}, line {line}", "the orientation is not a valid rotation", EXPORT_AGAIN)
     stamps_s = clock.stamps[clock.is_new]
-    return OrientationTable(stamps_s - stamps_s[:1], tuple(names[1:]), q[clock.is_new], clock.findings)
+    return OrientationTable(stamps_s - stamps_s[:1], tuple(names[1:]), q[clock.is_new], clock.findings, is_simulated)
 
 
 def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
@@ -116,7 +120,7 @@ def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
         )
         info = SensorInfo(serial=name, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
         sensors.append(ImportedSensor(name, (), str(files[0]), block, info, tuple(findings)))
-    return ImportedTrial("opensim", tuple(sensors))
+    return ImportedTrial("opensim", tuple(sensors), is_simulated=table.is_simulated)
 
 
 def _names(text: str, here: str) -> list[str]:

@@ -228,7 +228,7 @@ def in_fhir(out: Path) -> dict[str, str]:
     names = {pair: name for name, pair in OF_SIDES.items()} | {("", column): name for name, column in BOTH.items()}
     for one in (entry.resource for entry in entries if entry.resource.get_resource_type() == "Observation"):
         side = one.bodySite.text.removesuffix(" leg") if one.bodySite is not None else ""
-        name = names.get((side, one.code.coding[0].code))
+        name = names.get((side, one.code.coding[-1].code))
         assert one.interpretation is None
         assert one.referenceRange is None
         if name is None:

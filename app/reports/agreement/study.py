@@ -162,7 +162,8 @@ def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> 
     used = {id(trial) for walk in compared.values() for trial in (walk.reference, *(one for one, _ in walk.more))}
     left = [f"{one.file}{', ' * bool(one.trial.name)}{one.trial.name}" for one in with_angles if id(one) not in used]
     left += [walk.name for w, walk in enumerate(walks) if w not in compared]
-    return AgreementStudy(tuple(compared[w] for w in sorted(compared)), tuple(left), analysis.is_simulated)
+    is_simulated = analysis.is_simulated or any(file.is_simulated for _, file in files)
+    return AgreementStudy(tuple(compared[w] for w in sorted(compared)), tuple(left), is_simulated)
 
 
 def _paired(

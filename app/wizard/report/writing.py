@@ -67,6 +67,7 @@ class Documents:
                     if "csv" in chosen:
                         write_visits(request, beside)
                 formats = [Format(name) for name in OTHERS if name in chosen]
+                formats += [Format.STO] if Format.MOT in formats else []  # both are OpenSim's
                 if formats:
                     lines = export_from_library(
                         opened,

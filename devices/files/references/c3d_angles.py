@@ -72,7 +72,14 @@ def read_c3d(path: Path) -> ReferenceFile:
             "the file contains neither hip, knee or ankle angles nor the markers to compute them",
             "Include LKneeAngles and so on in the export, or name the markers LHIP, LKNE, LANK, LHEE, LTOE and R...",
         )
-    return ReferenceFile(FORMAT, source, (ReferenceTrial(angles=angles, events=_events(c3d["parameters"])),))
+    trial = ReferenceTrial(angles=angles, events=_events(c3d["parameters"]))
+    return ReferenceFile(FORMAT, source, (trial,), _is_simulated(c3d["parameters"]))
+
+
+def _is_simulated(parameters: Mapping[str, Any]) -> bool:
+    """Whether it is one of our own exports of a simulated patient."""
+    stated = parameters.get("SUBJECTS", {}).get("IS_SIMULATED", {}).get("value", ())
+    return len(stated) > 0 and bool(stated[0] == 1)
 
 
 def _refuse_cut(path: Path) -> None:

@@ -23,6 +23,7 @@ JOINTS = {
     "hip_flexion_r": Joint.RIGHT_HIP,
 }
 FORMAT, SOURCE = "opensim", "angles"
+SIMULATED = "SIMULATED"  # the mark of our own exports
 QUATERNION = re.compile(r"DataType\s*=\s*Quaternion", re.IGNORECASE)
 
 
@@ -59,7 +60,8 @@ def read_opensim(path: Path) -> ReferenceFile:
     stated = IN_DEGREES.search(header)
     to_rad = np.deg2rad(1.0) if stated and stated[1].lower() == "yes" else 1.0  # OpenSim's own default is radians
     angles = {joint: (time_s, _rad(values[:, k], to_rad)) for k, joint in enumerate(found, 1)}
-    return ReferenceFile(FORMAT, SOURCE, (ReferenceTrial(angles=angles),))
+    is_simulated = any(line.startswith(SIMULATED) for line in lines[:end])
+    return ReferenceFile(FORMAT, SOURCE, (ReferenceTrial(angles=angles),), is_simulated)
 
 
 def _coordinate(name: str) -> str:

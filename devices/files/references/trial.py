@@ -29,11 +29,14 @@ class ReferenceTrial:
 
 @dataclass(frozen=True, slots=True)
 class ReferenceFile:
-    """`format`: one of `reading.READERS`. `source`: how its angles came about, a word of `reading.SOURCES`."""
+    """`format`: one of `reading.READERS`. `source`: how its angles came about, a word of `reading.SOURCES`.
+    `is_simulated`: the file, one of our own exports, states that nobody was measured.
+    """
 
     format: str
     source: str
     trials: tuple[ReferenceTrial, ...]
+    is_simulated: bool = False
 
 
 def joint_of_name(name: str) -> Joint | None:

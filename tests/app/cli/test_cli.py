@@ -19,6 +19,7 @@ from app.cli import main as cli
 from app.cli.main import main
 from app.exports import result_folder
 from app.exports.exports import Format
+from app.exports.opensim_motion import Model
 from app.reports.agreement.folder import REPORT
 from app.storage.pseudonyms import Typed
 from app.summary import request
@@ -197,6 +198,7 @@ def test_the_choices_are_those_of_the_core() -> None:
     assert arguments.PAPERS == request.PAPERS
     assert arguments.DEFAULT_TAU_S == DEFAULT_TAU_S
     assert tuple(Format) == arguments.EXPORTED
+    assert tuple(Model) == arguments.MODELS
     assert tuple(Typed) == arguments.TYPED
     assert arguments.AGREEMENT == REPORT
 

@@ -193,16 +193,19 @@ def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session,
     assert written.endswith(b"}\n")
     assert b'\n  "resourceType": "Bundle"' in written
     reported = json.loads(written)
-    assert reported["type"] == "collection"
+    assert reported["type"] == "transaction"
     patient = reported["entry"][0]["resource"]
     assert patient["identifier"] == [{"system": "urn:x-gaitwright:patient", "value": "P 17"}]
     assert (patient["gender"], patient["birthDate"]) == ("female", "1950")
-    for entry in reported["entry"][1:]:
+    for entry in reported["entry"]:
         one = entry["resource"]
+        assert entry["fullUrl"].startswith("urn:uuid:")
+        if one["resourceType"] != "Observation":
+            continue
         assert one["subject"] == {"reference": reported["entry"][0]["fullUrl"]}
         assert one["effectiveDateTime"] == "2026-11-21T10:00:00+01:00"
         assert one["code"]["coding"][0]["system"] == "urn:x-gaitwright:parameter"
-        of = one["code"]["coding"][0]["code"]
+        of = one["code"]["coding"][0]["code"]  # with the side, where it is of one
         is_of_legs = of.endswith("_difference")
         words = f"{of.removesuffix('_difference')}, left less right" if is_of_legs else of
         assert one["code"]["text"] == words.replace("_", " ")
@@ -211,7 +214,6 @@ def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session,
         assert texts[0].startswith("barfuß" if is_of_legs else "walk")
         assert texts[0].endswith("barfuß" if is_of_legs else ", barfuß")
         assert any("Not a medical device" in text for text in texts)
-        assert entry["fullUrl"].startswith("urn:uuid:")
 
 
 @pytest.mark.parametrize(("strides", "status"), [(10, "final"), (9, "preliminary")])
@@ -232,9 +234,7 @@ def test_ten_strides_are_final_and_nine_are_not(
     export_from_folder(session, analysis_of(session), [Format.FHIR], tmp_path)
     reported = [entry["resource"] for entry in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
     (stance,) = (
-        one
-        for one in reported[1:]
-        if one["code"]["coding"][0]["code"] == "stance_percent" and one["bodySite"]["text"] == "left leg"
+        one for one in reported if one.get("code", {}).get("coding", [{}])[0].get("code") == "left_stance_percent"
     )
     counts = [part["valueInteger"] for part in stance["component"] if "valueInteger" in part]
     assert (counts, stance["status"]) == ([strides], status)
@@ -250,7 +250,10 @@ def test_a_patient_of_whom_nothing_is_reported_has_neither_name_nor_sex(
             replace(session, patient=patient, started=""), analysis, [Format.FHIR], tmp_path, is_identified=True
         )
         reported = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]
-        assert reported[0]["resource"].keys() <= {"resourceType", "meta"}
+        assert reported[0]["resource"].keys() <= {"resourceType", "meta", "identifier"}
+        assert reported[0]["resource"]["identifier"] == [
+            {"system": "urn:ietf:rfc:3986", "value": reported[0]["fullUrl"]}
+        ]
         assert all("effectiveDateTime" not in entry["resource"] for entry in reported)
 
 

@@ -280,16 +280,19 @@ def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp
         "fhir_bundle.json",
         "free_motion/angles.c3d",
         "free_motion/angles.mot",
+        "free_motion/orientations.sto",
         "gaitwright.xlsx",
+        "standing/orientations.sto",
         "walk_1/angles.c3d",
         "walk_1/angles.mot",
+        "walk_1/orientations.sto",
     ]
 
 
 def test_a_format_that_fails_takes_no_other_with_it(
     visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> str:
+    def fail(*_: object, **__: object) -> str:
         raise RuntimeError("what its library threw")
 
     monkeypatch.setattr("app.exports.c3d_angles.write_c3d", fail)

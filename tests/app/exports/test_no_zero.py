@@ -81,9 +81,9 @@ def test_the_summary_has_no_figure_of_a_height(folder: Path) -> None:
 
 
 def test_fhir_gives_a_reason_for_a_missing_height(folder: Path) -> None:
-    entries = json.loads((folder / "fhir_bundle.json").read_text())["entry"][1:]
+    entries = json.loads((folder / "fhir_bundle.json").read_text())["entry"]
     reported = {
-        one["code"]["coding"][0]["code"]: one
+        one["code"]["coding"][-1]["code"]: one
         for one in (entry["resource"] for entry in entries)
         if one.get("bodySite", {}).get("text") == "left leg"
     }

@@ -43,7 +43,7 @@ def test_a_motion_file_ends_at_a_gap_and_another_one_begins(walk: RecordingAnaly
     n = len(walk.time_s)
     assert write_motion(missing(walk, slice(0, 20), slice(300, 340), slice(n - 5, n)), False, tmp_path / "a.mot") == ""
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a_1.mot", "a_2.mot"]
-    knee_deg = np.rad2deg(walk.joints[KNEE].angle_rad)
+    knee_deg = np.maximum(np.rad2deg(walk.joints[KNEE].angle_rad), 0.0)  # as far as the model's knee goes
     for number, rows in ((1, slice(20, 300)), (2, slice(340, n - 5))):
         head, values = table_of(tmp_path / f"a_{number}.mot")
         np.testing.assert_array_equal(values[:, 0], walk.time_s[rows])
@@ -136,7 +136,7 @@ def test_a_c3d_that_is_too_long_goes_on_in_another_file(
             minutes, seconds = one["EVENT"]["TIMES"]["value"]
             times_s += list(starts_s + 60.0 * minutes + seconds)
     found = np.concatenate([getattr(e, f"{n}_s") for g in walk.gait.values() for e in g.events for n in NAMES])
-    np.testing.assert_allclose(times_s, np.sort(found[np.isfinite(found)]) - 3.0, atol=1e-3)
+    np.testing.assert_allclose(np.sort(times_s), np.sort(found[np.isfinite(found)]) - 3.0, atol=1e-3)
 
 
 NAMES = ("initial_contact", "full_contact", "heel_rise", "toe_off")

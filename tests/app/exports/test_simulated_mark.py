@@ -8,6 +8,7 @@ import pytest
 from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
 from app.importing.import_drafts import drafts_of, session_of
+from app.reports.agreement.study import study_of
 from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
@@ -15,6 +16,8 @@ from core.session import Recording, RecordingKind, Session
 from devices.files.answers import details_of, value_from
 from devices.files.formats import format_of, read_trial
 from devices.files.imports import add_recording, place_sensors
+from devices.files.references.reading import read_reference
+from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.trial import ImportedTrial
@@ -65,6 +68,24 @@ def test_every_file_that_can_be_read_again_states_who_was_measured(
         (draft,) = drafts_of([("walk", trial)])
         sites = dict(zip((one.key for one in draft.sensors), SITES, strict=False))
         assert session_of(draft, [RecordingKind.WALKING], sites).is_simulated is is_simulated
+
+
+@pytest.mark.parametrize("is_simulated", [True, False])
+def test_a_reference_that_was_simulated_marks_what_is_compared_with_it(
+    visit: tuple[Session, Analysis], is_simulated: bool, tmp_path: Path
+) -> None:
+    """`agree` with our own C3D or OpenSim export of a simulated patient, of somebody who was measured."""
+    session, analysis = visit
+    export_from_folder(
+        session, replace(analysis, is_simulated=is_simulated), [Format.C3D, Format.MOT], tmp_path, is_identified=True
+    )
+    found = {path.suffix: read_reference(path) for path in tmp_path.glob("walk*/angles.*")}
+    assert set(found) == {".c3d", ".mot"}
+    for name, reference in found.items():
+        arrays: list[object] = []
+        assert value_from(ReferenceFile, details_of(reference, arrays), arrays).is_simulated is is_simulated  # type: ignore[arg-type]  # of any kind
+        assert study_of(replace(analysis, is_simulated=False), [(name, reference)]).is_simulated is is_simulated
+    assert study_of(replace(analysis, is_simulated=True), [(name, reference)]).is_simulated
 
 
 def test_what_was_simulated_joins_no_session_of_a_patient(walked: tuple[Session, Analysis], tmp_path: Path) -> None:

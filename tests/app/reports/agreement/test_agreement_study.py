@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.exports.c3d_angles import write_c3d
-from app.exports.opensim_motion import write_motion
+from app.exports.opensim_motion import Model, write_motion
 from app.reports.agreement.pictures import FIGURES, pictures_of
 from app.reports.agreement.printed import printed
 from app.reports.agreement.study import AgreementStudy, AngleKind, study_of
@@ -169,7 +169,12 @@ def test_left_and_right_exchanged_is_stated_and_where_they_are_not_it_is_not(
     )
 
 
-@pytest.mark.parametrize("write", [write_c3d, write_motion])
+def write_for_gait2392(walk: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
+    """For the model whose knee may be straighter than straight, and has the other sign."""
+    return write_motion(walk, is_simulated, path, Model.GAIT2392)
+
+
+@pytest.mark.parametrize("write", [write_c3d, write_for_gait2392])
 def test_our_own_exports_agree_with_us(
     simulated: tuple[Session, SessionTruth, Analysis],
     write: Callable[[RecordingAnalysis, bool, Path], str],

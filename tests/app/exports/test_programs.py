@@ -1,0 +1,73 @@
+"""The manual names the programs that opened our files: each by a test, with the version that it was run with."""
+
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.other_programs import version_in_node, version_in_python
+
+HELP = Path(__file__).parents[3] / "resources" / "help"
+TITLES = {
+    "files.md": "### Programs that opened these files",
+    "de/files.md": "### Programme, die diese Dateien geöffnet haben",
+}
+ROW = re.compile(r"\| `?(?P<file>[^|`]+)`? \| (?P<program>\S+) (?P<version>[\d.]+) \| (?P<what>[^|]+) \|")
+# file and program -> the test that opens it, and the package whose version it is
+PROGRAMS = {
+    ("angles.mot", "OpenSim"): (
+        "opensim",
+        "test_opensim.test_opensim_reads_every_row",
+        "test_opensim.test_a_model_moves_as_the_patient_did_and_within_its_limits",
+    ),
+    ("orientations.sto", "OpenSim"): (
+        "opensim",
+        "test_opensim.test_opensim_reads_our_orientations_and_we_read_its_own",
+        "test_opensim.test_opensense_moves_its_model_as_the_patient_moved",
+    ),
+    ("angles.c3d", "ezc3d"): ("ezc3d", "test_c3d_readers.test_ezc3d_reads_angles_units_and_events"),
+    ("angles.c3d", "c3d"): (
+        "c3d",
+        "test_c3d_readers.test_c3d_reads_angles_units_and_events",
+        "test_c3d_readers.test_more_frames_than_a_signed_number_holds_are_counted_by_all",
+    ),
+    ("angles.c3d", "kineticstoolkit"): (
+        "kineticstoolkit",
+        "test_c3d_readers.test_kineticstoolkit_reads_angles_units_and_events",
+    ),
+    ("angles.c3d", "pyomeca"): ("pyomeca", "test_c3d_readers.test_pyomeca_reads_angles_and_units"),
+    ("fhir_bundle.json", "fhir-resources"): (
+        "fhir-resources",
+        "test_fhir_transaction.test_fhir_resources_takes_the_transaction",
+        "test_formats.test_another_library_takes_the_bundle",
+    ),
+    ("fhir_bundle.json", "fhir"): ("npm:fhir", "test_fhir_transaction.test_fhir_of_npm_finds_no_error"),
+}
+
+
+def rows(page: str) -> list[re.Match[str]]:
+    _, table = (HELP / page).read_text(encoding="utf-8").split(TITLES[page])
+    lines = [line for line in table.split("\n## ")[0].splitlines() if line.startswith("| ")][1:]
+    found = [ROW.fullmatch(line) for line in lines]
+    assert all(found), lines
+    return [one for one in found if one]
+
+
+@pytest.mark.parametrize("page", TITLES)
+def test_every_program_that_the_manual_names_has_its_tests(page: str) -> None:
+    named = [(one["file"], one["program"]) for one in rows(page)]
+    assert named == list(PROGRAMS)
+    for _, *tests in PROGRAMS.values():
+        for test in tests:
+            module, name = test.split(".")
+            assert callable(getattr(importlib.import_module(f"tests.app.exports.{module}"), name))
+
+
+@pytest.mark.parametrize("page", TITLES)
+def test_the_versions_are_those_that_the_tests_run_with(page: str) -> None:
+    for one in rows(page):
+        package, *_ = PROGRAMS[one["file"], one["program"]]
+        name = package.removeprefix("npm:")
+        found = version_in_python(name)[0] if name == package else version_in_node(name)
+        assert found in ("", one["version"]), one["program"]  # without it its tests are skipped too, and state so
