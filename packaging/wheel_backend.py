@@ -78,18 +78,18 @@ def moved(source: str, name: str) -> str:
     Raises SyntaxError for an import of another form than `from X import Y`.
     """
     lines = source.encode().splitlines(keepends=True)  # a tree counts bytes
-    places: list[tuple[int, int, bytes]] = []
+    places: list[tuple[int, int]] = []
     for node in ast.walk(ast.parse(source, name)):
         if isinstance(node, ast.Import) and any(_is_ours(one.name) for one in node.names):
             raise SyntaxError(f"{name}, line {node.lineno}: write `from X import Y`")
         if isinstance(node, ast.ImportFrom) and not node.level and _is_ours(node.module or ""):
             at = lines[node.lineno - 1].index(b"from ", node.col_offset) + len("from ")
-            places.append((node.lineno, at, node.module.encode()))
+            places.append((node.lineno, at))
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and _is_module(node.value.rstrip(".")):
             at = lines[node.lineno - 1].find(node.value.encode(), node.col_offset)
             if at >= 0:
-                places.append((node.lineno, at, node.value.encode()))
-    for number, at, _ in sorted(set(places), reverse=True):
+                places.append((node.lineno, at))
+    for number, at in sorted(set(places), reverse=True):
         line = lines[number - 1]
         lines[number - 1] = line[:at] + f"{NAME}.".encode() + line[at:]
     return b"".join(lines).decode()
