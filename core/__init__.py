@@ -11,6 +11,7 @@ meaning, every other name may change. `tests/examples` has one script per task.
 from typing import TYPE_CHECKING
 
 from core.lazy_names import lazily
+from core.public import MODULES
 
 if TYPE_CHECKING:
     from core.public import *  # the names below, for type checkers and editors
@@ -31,4 +32,4 @@ __all__ = (
 # fmt: on
 
 if not TYPE_CHECKING:  # a type checker would take any name for offered
-    __getattr__ = lazily(__name__, __all__)
+    __getattr__ = lazily(__name__, MODULES)

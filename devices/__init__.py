@@ -9,6 +9,7 @@ has to say of itself, and samples that come now. These keep their meaning, every
 from typing import TYPE_CHECKING
 
 from core.lazy_names import lazily
+from devices.public import MODULES
 
 if TYPE_CHECKING:
     from devices.public import *  # the names below, for type checkers and editors
@@ -25,4 +26,4 @@ __all__ = (
 # fmt: on
 
 if not TYPE_CHECKING:  # a type checker would take any name for offered
-    __getattr__ = lazily(__name__, __all__)
+    __getattr__ = lazily(__name__, MODULES)

@@ -13,6 +13,8 @@ import ctypes
 import hashlib
 import importlib.util
 import os
+import platform
+import re
 import shutil
 import subprocess
 from collections.abc import Sequence
@@ -23,6 +25,7 @@ ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 STAMP = VENV / "made-from"
 UNFINISHED = "unfinished"
+RUNTIME, TESTED = "runtime.lock", "requirements.lock"  # the second holds the first, and what the tests need
 
 # All that decides which wheels fit; a system update may change the rest of the version under a running set-up.
 PYTHON_VERSION = f"{sys.version_info[0]}.{sys.version_info[1]}"
@@ -50,16 +53,19 @@ class SetUpError(Exception):
     """Something is missing that only the user can bring. The message states what to do."""
 
 
-def prepare(*, is_screen_needed: bool) -> Path:
-    """Prepare all and give the environment's Python; raises SetUpError in sentences for the user."""
+def prepare(*, is_screen_needed: bool, lock: str = RUNTIME) -> Path:
+    """Prepare all and give the environment's Python; raises SetUpError in sentences for the user.
+
+    `lock` names what is installed: what the application needs, or that and what its tests need.
+    """
     try:
         missing = missing_libraries()
-        if not is_current() and not can_make_environments():
+        if not is_current(lock) and not can_make_environments():
             missing.append(VENV_PACKAGE)
         if missing and not install(missing) and (is_screen_needed or VENV_PACKAGE in missing):
             raise SetUpError(how_to_install(missing))
-        if not is_current():
-            make_environment()
+        if not is_current(lock):
+            make_environment(lock)
     except KeyboardInterrupt:
         raise SetUpError("Stopped before everything was ready. Start again to go on.") from None
     return python()
@@ -69,20 +75,21 @@ def python() -> Path:
     return VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
-def fingerprint() -> str:
+def fingerprint(lock: str = RUNTIME) -> str:
     """Hash what the environment is made from. Folder and packages count, because what is inside points at them."""
     packages = sorted(file.parent.name for file in ROOT.glob("*/__init__.py"))
     made_from = hashlib.sha256(f"{PYTHON_VERSION}\n{ROOT}\n{packages}\n".encode())
-    for name in ("pyproject.toml", "packaging/requirements.lock"):
+    for name in ("pyproject.toml", f"packaging/{lock}"):
         made_from.update((ROOT / name).read_bytes())
     return made_from.hexdigest()
 
 
-def is_current() -> bool:
-    return _stamp() == fingerprint() and python().exists()
+def is_current(lock: str = RUNTIME) -> bool:
+    """Whether nothing is to be installed: the tests' parts hold the application's."""
+    return _stamp() in {fingerprint(lock), fingerprint(TESTED)} and python().exists()
 
 
-def make_environment() -> None:
+def make_environment(lock: str) -> None:
     """Bring `.venv` to what the lock contains: a sound one is updated, a half-made or foreign one is made again."""
     if _stamp() == UNFINISHED or not _is_sound():
         say(f"Making a place for Gaitwright's parts in {VENV}.")
@@ -98,10 +105,10 @@ def make_environment() -> None:
     # nothing is compiled in advance: most of it is never imported
     pip = [str(python()), "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps", "--no-compile"]
     advice = "The parts could not be installed. Check the connection to the internet, then start again."
-    lock = str(ROOT / "packaging" / "requirements.lock")
-    _run_quietly([*pip, "--only-binary", ":all:", "--require-hashes", "--requirement", lock], advice)
+    parts = str(ROOT / "packaging" / lock)
+    _run_quietly([*pip, "--only-binary", ":all:", "--require-hashes", "--requirement", parts], advice)
     _run_quietly([*pip, "--no-build-isolation", "--editable", str(ROOT)], advice)
-    STAMP.write_text(fingerprint(), encoding="utf-8")
+    STAMP.write_text(fingerprint(lock), encoding="utf-8")
 
 
 def can_make_environments() -> bool:
@@ -192,4 +199,16 @@ def _run_quietly(command: Sequence[str], advice: str, **environment: str) -> Non
         check=False,
     )
     if answer.returncode != 0:
-        raise SetUpError(f"{answer.stdout.strip()}\n\n{advice}")
+        raise SetUpError(f"{answer.stdout.strip()}\n\n{_without_wheel(answer.stdout) or advice}")
+
+
+def _without_wheel(printed: str) -> str:
+    """Name the part that exists, but not for this Python or computer; empty where pip failed at something else."""
+    refused = re.search(r"No matching distribution found for ([\w.-]+)", printed)
+    # a registry that was not reached says so first, and then that it found none
+    if refused is None or "Could not find a version that satisfies" not in printed or "connection" in printed.lower():
+        return ""
+    return (
+        f"{refused[1]} has no wheel for Python {PYTHON_VERSION} on this computer ({platform.system()}, "
+        f"{platform.machine()}). Start Gaitwright with another Python from 3.11 on."
+    )

@@ -8,7 +8,7 @@ import os
 import subprocess
 import sys
 
-from setup_environment import ROOT, SetUpError, hand_over, prepare, say
+from setup_environment import ROOT, TESTED, SetUpError, hand_over, prepare, say
 
 CHECKS = (
     ("ruff", "check"),
@@ -21,7 +21,7 @@ CHECKS = (
 
 def main(arguments: list[str]) -> None:
     try:
-        python = prepare(is_screen_needed=True)
+        python = prepare(is_screen_needed=True, lock=TESTED)
     except SetUpError as missing:
         sys.exit(str(missing))
     os.chdir(ROOT)

@@ -25,7 +25,8 @@ from uuid import UUID
 
 import platformdirs
 
-OWN_PACKAGES = ("app", "core", "devices")
+HOME = __name__.removesuffix("app.system.logs")  # "gaitwright." where a wheel was installed
+OWN_PACKAGES = tuple(HOME + name for name in ("app", "core", "devices"))
 FILE_NAME = "gaitwright.log"
 FILE_BYTES, OLD_FILES = 1_000_000, 4
 LONGEST_CHAIN = 5  # exceptions of exceptions
@@ -153,7 +154,7 @@ def _module(name: str) -> str:
 
 
 def _is_own(module: str) -> bool:
-    return module.partition(".")[0] in OWN_PACKAGES
+    return any(module == package or module.startswith(f"{package}.") for package in OWN_PACKAGES)
 
 
 @cache

@@ -41,6 +41,23 @@ def test_what_is_packed_is_what_was_tested() -> None:
     assert {name: version for name, version in packed.items() if tested.get(name, version) != version} == {}
 
 
+def test_a_start_installs_what_was_tested_and_nothing_for_tests() -> None:
+    tested, started = pins("requirements.lock"), pins("runtime.lock")
+    assert {name: version for name, version in started.items() if tested.get(name, version) != version} == {}
+    assert {
+        "pytest",
+        "hypothesis",
+        "pandas",
+        "mypy",
+        "pgserver",
+        "moto",
+        "ruff",
+        "psycopg",
+        "dask",
+    } & started.keys() == set()
+    assert {"setuptools", "tomli-w", "pyside6-essentials", "vqf", "openpyxl"} <= started.keys()
+
+
 def test_the_bundle_has_every_extra_and_what_builds_it_and_nothing_for_tests() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]

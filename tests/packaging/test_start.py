@@ -19,7 +19,8 @@ PACKAGING = Path(__file__).parents[2] / "packaging"
 def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """Give `setup_environment` for an empty project in `tmp_path`, with the steps it runs noted in `steps`."""
     (tmp_path / "packaging").mkdir()
-    (tmp_path / "packaging" / "requirements.lock").write_text("")
+    for lock in ("requirements.lock", "runtime.lock"):
+        (tmp_path / "packaging" / lock).write_text(lock)
     (tmp_path / "pyproject.toml").write_text("")
     monkeypatch.syspath_prepend(PACKAGING)
     module = importlib.import_module("setup_environment")
@@ -62,13 +63,44 @@ def test_a_first_start_makes_the_environment_from_the_lock_and_the_second_does_n
     assert set_up.steps == []
 
 
-@pytest.mark.parametrize("changed", ["pyproject.toml", "packaging/requirements.lock"])
+@pytest.mark.parametrize("changed", ["pyproject.toml", "packaging/runtime.lock"])
 def test_a_changed_lock_or_project_updates_the_environment_in_place(set_up: ModuleType, changed: str) -> None:
     set_up.prepare(is_screen_needed=True)
     set_up.steps.clear()
     (set_up.ROOT / changed).write_text("another")
     set_up.prepare(is_screen_needed=True)
     assert [" -m pip " in step for step in set_up.steps] == [True, True]
+
+
+def test_what_the_tests_need_is_added_where_it_is_asked_for_and_does_for_the_application(set_up: ModuleType) -> None:
+    set_up.prepare(is_screen_needed=True)
+    assert any(step.endswith("runtime.lock") for step in set_up.steps)
+    set_up.steps.clear()
+    (set_up.ROOT / "packaging" / "requirements.lock").write_text("more")
+    set_up.prepare(is_screen_needed=True, lock=set_up.TESTED)
+    assert any(step.endswith("requirements.lock") for step in set_up.steps)
+    set_up.steps.clear()
+    set_up.prepare(is_screen_needed=True)
+    assert set_up.steps == []
+
+
+NO_WHEEL = """\
+ERROR: Could not find a version that satisfies the requirement vqf==2.1.2 (from versions: none)
+ERROR: No matching distribution found for vqf==2.1.2
+"""
+NOT_REACHED = "WARNING: Retrying after connection broken by 'NewConnectionError'\n"
+
+
+@pytest.mark.parametrize(
+    ("printed", "stated"),
+    [(NO_WHEEL, "vqf has no wheel for Python"), (NOT_REACHED + NO_WHEEL, ""), ("ERROR: no space left", "")],
+)
+def test_a_part_without_a_wheel_is_named_and_the_connection_is_not_blamed(
+    set_up: ModuleType, printed: str, stated: str
+) -> None:
+    reported = set_up._without_wheel(printed)
+    assert reported.startswith(stated)
+    assert bool(reported) == bool(stated)
 
 
 def test_an_environment_whose_set_up_was_cut_short_is_made_again(
