@@ -51,6 +51,8 @@ class CourseEntry(Card):
 
     def show_test(self, planned: PlannedTest) -> None:
         """Show what was entered for a test that has a course, and nothing for others."""
+        if planned == self._shown:
+            return  # what is being typed stays
         self._shown = planned
         label = course_label(planned.protocol)
         self.setVisible(bool(label))
@@ -59,8 +61,7 @@ class CourseEntry(Card):
         self._counted.setVisible(_has_laps(planned))
         values = (course_of(planned), planned.typed_laps, planned.rest_m)
         for field, value in zip(self.fields, values, strict=True):
-            if not field.line_edit.hasFocus():
-                field.set_value(value)
+            field.set_value(value)
 
     def _on_committed(self) -> None:
         if self.planned != self._shown and not any(field.is_wrong for field in self.fields):

@@ -60,6 +60,7 @@ class CourseField(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
+        self._protocol: TimedProtocol | None = None
         self._caption = Text(tone="ink2")
         self.field = NumberField(
             "", low=SHORTEST_M, high=LONGEST_M, decimals=2, unit="m", has_label=False, states_wrong=False
@@ -86,8 +87,10 @@ class CourseField(QWidget):
         self.setVisible(bool(label))
         self._caption.setText(label)
         self.field.set_label(tr("Next test, {length}").format(length=within_sentence(label)))  # not the one before
-        if planned is not None and not self.field.line_edit.hasFocus():
+        protocol = None if planned is None else planned.protocol
+        if planned is not None and (protocol is not self._protocol or not self.field.line_edit.hasFocus()):
             self.field.set_value(course_of(planned))
+        self._protocol = protocol
 
     def take_focus(self) -> None:
         self.field.line_edit.setFocus(Qt.FocusReason.ShortcutFocusReason)
