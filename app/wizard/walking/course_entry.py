@@ -10,7 +10,7 @@ from app.widgets.card import Card
 from app.widgets.field import NumberField
 from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
-from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M
+from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M, LeavingKeys
 from app.wording.timed_tests import course_label
 from app.wording.translation import tr
 from core.timed.protocols import DEFINITIONS, PlannedTest, course_of, with_course
@@ -19,9 +19,10 @@ MOST_LAPS = 200
 
 
 class CourseEntry(Card):
-    """`entered`: something else was entered; `planned` is then the test with what the fields hold."""
+    """`entered`: something else was entered; `planned` is then the test with what the fields hold. `left`: by a key."""
 
     entered = Signal()
+    left = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -36,6 +37,7 @@ class CourseEntry(Card):
         lay_out(self.column, lay_out(QHBoxLayout(), self._caption, self.length, self._counted, 1, spacing=12))
         for field in self.fields:
             field.committed.connect(self._on_committed)
+            LeavingKeys(field).left.connect(self.left)
 
     @property
     def fields(self) -> tuple[NumberField, ...]:
