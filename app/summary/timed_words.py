@@ -12,6 +12,7 @@ from core.timed.measures import COLUMNS
 from core.timed.protocols import TimedProtocol
 from core.verdicts.published_changes import ChangeKind, Population, PublishedChange, published_changes
 
+MDC, MCID = "MDC", "MCID"  # in every language
 OF_A_SIDE = ("left", "right", "both")
 
 
@@ -60,7 +61,7 @@ def published_sentence(protocol: TimedProtocol, populations: Sequence[Population
     """The same in one line; empty where nothing is published."""
     stated = []
     for population, detectable, important in published_rows(protocol, populations):
-        of_kind = ((tr("MDC"), detectable), (tr("MCID"), important))
+        of_kind = ((MDC, detectable), (MCID, important))
         figures = ", ".join(f"{word} {span_in_words(found)}" for word, found in of_kind if found is not None)
         stated.append(f"{name_of_population(population)}: {figures}")
     if not stated:

@@ -1,4 +1,4 @@
-"""The demonstration's patient, who stands, moves and walks when asked, and performs every timed test."""
+"""The demonstration's patient: standing, moving and walking when asked, and performing every timed test."""
 
 import threading
 from collections.abc import Callable, Sequence

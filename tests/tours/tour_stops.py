@@ -362,7 +362,7 @@ CLOCK_RUNS = states("Clock runs")
 
 
 def is_over(words: str) -> Callable[[Seen], bool]:
-    """Whether a test was recorded and analysed, and its result says so."""
+    """Whether a test was recorded and analysed, and its result is shown."""
     return lambda seen: not seen.is_recording and seen.states(words) and not seen.states("being analysed")
 
 

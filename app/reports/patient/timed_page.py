@@ -10,7 +10,15 @@ from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, si
 from app.summary.plain_text import CONDITION_LENGTH, isolated, plain, typed
 from app.summary.request import ReportRequest
 from app.summary.timed_tables import Section, sections_of
-from app.summary.timed_words import name_of_population, populations_of, published_rows, span_in_words, unread_note
+from app.summary.timed_words import (
+    MCID,
+    MDC,
+    name_of_population,
+    populations_of,
+    published_rows,
+    span_in_words,
+    unread_note,
+)
 from app.summary.visits import condition_in_words
 from app.wording.measures import short_unit
 from app.wording.recordings import name_in_words
@@ -102,7 +110,7 @@ def _published(protocols: list[TimedProtocol], populations: tuple[Population, ..
     if not rows:
         return []
     columns = [Column(tr("Test"), is_number=False), Column(tr("Patients"), "1fr", is_number=False)]
-    columns += [Column(tr("Unit"), is_number=False), Column(tr("MDC")), Column(tr("MCID"))]
+    columns += [Column(tr("Unit"), is_number=False), Column(MDC), Column(MCID)]
     explained = tr("MDC: least change beyond measurement error. MCID: least change that matters to patients. Sources:")
     daggers = [unread_note()] if any(DAGGER in cell for row in rows for cell in row if isinstance(cell, str)) else []
     cited = note(" ".join([f"{explained} {'; '.join(sources)}.", *daggers]))

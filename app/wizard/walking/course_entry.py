@@ -10,7 +10,7 @@ from app.widgets.card import Card
 from app.widgets.field import NumberField
 from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
-from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M
+from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M, LeavingKeys
 from app.wording.timed_tests import course_label
 from app.wording.translation import tr
 from core.timed.protocols import DEFINITIONS, PlannedTest, course_of, with_course
@@ -19,9 +19,10 @@ MOST_LAPS = 200
 
 
 class CourseEntry(Card):
-    """`entered`: something else was entered; `planned` is then the test with what the fields hold."""
+    """`entered`: something else was entered; `planned` is then the test with what the fields hold. `left`: by a key."""
 
     entered = Signal()
+    left = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -36,6 +37,7 @@ class CourseEntry(Card):
         lay_out(self.column, lay_out(QHBoxLayout(), self._caption, self.length, self._counted, 1, spacing=12))
         for field in self.fields:
             field.committed.connect(self._on_committed)
+            LeavingKeys(field).left.connect(self.left)
 
     @property
     def fields(self) -> tuple[NumberField, ...]:
@@ -51,6 +53,8 @@ class CourseEntry(Card):
 
     def show_test(self, planned: PlannedTest) -> None:
         """Show what was entered for a test that has a course, and nothing for others."""
+        if planned == self._shown:
+            return  # what is being typed stays
         self._shown = planned
         label = course_label(planned.protocol)
         self.setVisible(bool(label))
@@ -59,8 +63,7 @@ class CourseEntry(Card):
         self._counted.setVisible(_has_laps(planned))
         values = (course_of(planned), planned.typed_laps, planned.rest_m)
         for field, value in zip(self.fields, values, strict=True):
-            if not field.line_edit.hasFocus():
-                field.set_value(value)
+            field.set_value(value)
 
     def _on_committed(self) -> None:
         if self.planned != self._shown and not any(field.is_wrong for field in self.fields):

@@ -266,7 +266,8 @@ class WalkingPage(QWidget):
         self.next.chooser.chosen.connect(self._on_chosen)
         self.stopped.keep.clicked.connect(self._on_keep_clicked)
         self.stopped.discard.clicked.connect(self._on_discard_clicked)
-        self.next.course.left.connect(self.focus)
+        for entry in (self.next.course, self.timed_result.entry):
+            entry.left.connect(self.focus)
         self.tabs.chosen.connect(self._arrange)
 
     def _arrange(self) -> None:

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme.current import scaled
 from app.widgets.choice import Choice
-from app.widgets.field import NumberField
+from app.widgets.field import Field, NumberField
 from app.widgets.key_cap import KeyCap
 from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
@@ -49,6 +49,28 @@ class TimedChooser(Choice):
         self.chosen.emit(self.currentData())
 
 
+class LeavingKeys(QObject):
+    """Lets Enter and Esc leave a field: Enter is the primary button's elsewhere, Esc the window's. `left`: by them."""
+
+    left = Signal()
+
+    def __init__(self, field: Field) -> None:
+        super().__init__(field)
+        self._line = field.line_edit
+        self._line.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if isinstance(event, QKeyEvent) and event.key() in LEAVING and not event.modifiers():
+            if event.type() is QEvent.Type.ShortcutOverride:
+                event.accept()
+                return True
+            if event.type() is QEvent.Type.KeyPress:
+                self._line.clearFocus()
+                self.left.emit()
+                return True
+        return super().eventFilter(watched, event)
+
+
 class CourseField(QWidget):
     """How long the course of the chosen test is; C leads to it, Enter and Esc lead out again, Space starts the test.
 
@@ -60,6 +82,7 @@ class CourseField(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
+        self._protocol: TimedProtocol | None = None
         self._caption = Text(tone="ink2")
         self.field = NumberField(
             "", low=SHORTEST_M, high=LONGEST_M, decimals=2, unit="m", has_label=False, states_wrong=False
@@ -69,7 +92,7 @@ class CourseField(QWidget):
         lay_out(QHBoxLayout(self), self._caption, self.field, KeyCap("C"), margins=0, spacing=8)
         self.field.edited.connect(self.entered)
         self.field.committed.connect(self.entered)
-        self.field.line_edit.installEventFilter(self)
+        LeavingKeys(self.field).left.connect(self.left)
 
     @property
     def value(self) -> float | None:
@@ -86,20 +109,11 @@ class CourseField(QWidget):
         self.setVisible(bool(label))
         self._caption.setText(label)
         self.field.set_label(tr("Next test, {length}").format(length=within_sentence(label)))  # not the one before
-        if planned is not None and not self.field.line_edit.hasFocus():
+        protocol = None if planned is None else planned.protocol
+        if planned is not None and (protocol is not self._protocol or not self.field.line_edit.hasFocus()):
             self.field.set_value(course_of(planned))
+        self._protocol = protocol
 
     def take_focus(self) -> None:
         self.field.line_edit.setFocus(Qt.FocusReason.ShortcutFocusReason)
         self.field.line_edit.selectAll()
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Let Enter and Esc leave the field: Enter is the primary button's elsewhere, Esc the window's."""
-        if isinstance(event, QKeyEvent) and event.key() in LEAVING and not event.modifiers():
-            if event.type() is QEvent.Type.ShortcutOverride:
-                event.accept()
-                return True
-            if event.type() is QEvent.Type.KeyPress:
-                self.left.emit()
-                return True
-        return super().eventFilter(watched, event)

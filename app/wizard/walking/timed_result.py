@@ -144,8 +144,8 @@ class TimedResultView(QWidget):
         self.then.setVisible(bool(self.then.text()))
         is_whole = found is not None and not why_sentence(found)
         self._mark.set_icon(Icon.CHECK if is_whole else Icon.INFO)
-        said = self.first.text() if is_valid else self.not_valid.text
-        self.setAccessibleDescription(f"{said} {self.then.text()}")
+        answer = self.first.text() if is_valid else self.not_valid.text
+        self.setAccessibleDescription(f"{answer} {self.then.text()}")
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -196,7 +196,7 @@ def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
 
 
 def _section_rows(sections: Sections, whole_s: float) -> tuple[list[TableColumn], list[TableRow]]:
-    """The parts with their figures; when each was, as a bar on the time of the test, where that tells them apart."""
+    """The parts with their figures; when each was, as a bar on the time of the test, for those of a chair test."""
     columns = [TableColumn(share=1 - sections.has_strip), *_heads(sections.heads)]
     columns += [TableColumn(share=1)] * sections.has_strip
     rows = []

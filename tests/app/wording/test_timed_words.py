@@ -145,7 +145,7 @@ UP = replace(
         ((), ""),
     ],
 )
-def test_a_test_that_is_not_valid_says_so_by_its_gravest_reason(reasons: tuple[NotValid, ...], sentence: str) -> None:
+def test_a_test_that_is_not_valid_is_stated_by_its_gravest_reason(reasons: tuple[NotValid, ...], sentence: str) -> None:
     test = replace(UP, not_valid=reasons)
     assert not_valid_sentence(test) == sentence
     assert bool(remedy_sentence(test)) is bool(reasons)

@@ -18,7 +18,7 @@ SEATED_DEG, STANDING_DEG = 60.0, 25.0
 LEFT_THIGH, LEFT_FOOT = DEMONSTRATION_NAMES[Site.LEFT_THIGH], DEMONSTRATION_NAMES[Site.LEFT_FOOT]
 
 
-class SteppedClock:
+class ReadClock:
     def __init__(self) -> None:
         self.time_ns = 1_000_000_000_000
 
@@ -30,7 +30,7 @@ class Watched(DemonstrationPatient):
     """A patient on a clock that goes on with each read, and whose walks are made before anybody goes on."""
 
     def __init__(self) -> None:
-        self.clock = SteppedClock()
+        self.clock = ReadClock()
         few = (Standing(duration_s=4.0), FreeMotion(duration_s=6.0))
         super().__init__(WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=few), now_ns=self.clock)
         self._sleep = self._pass_by

@@ -73,15 +73,17 @@ def choose(step: WalkingStep, protocol: TimedProtocol) -> None:
         assert step.on_intent(NEXT_TEST)
 
 
+def _seconds(shown: str) -> float:
+    return float(shown) if shown else 0.0
+
+
 def led(qtbot: QtBot, step: WalkingStep, visit: Visit, protocol: TimedProtocol, ends_at_s: float = 0.0) -> TimedTest:
     """Lead a test from Space to its result; one of minutes is ended by Space when so much has passed."""
     choose(step, protocol)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         assert step.on_intent(RUN)
         if ends_at_s:
-            qtbot.waitUntil(
-                lambda: (view := step._timed.view()) is not None and view.elapsed_s > ends_at_s, timeout=PATIENCE_MS
-            )
+            qtbot.waitUntil(lambda: _seconds(step.page.timed.time.text) > ends_at_s, timeout=PATIENCE_MS)
             assert step.on_intent(RUN)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
     analysis = visit.evaluation.analysis
