@@ -330,14 +330,17 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
 
 
 def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
-    """Give contact to toe-off, in s, wherever both feet stood for a second between two steps."""
+    """Give contact to toe-off, in s, wherever both feet stood for a second between two steps and did not turn."""
     swings = way.swings_s
     landed = np.maximum.accumulate(swings[:, 1]) if len(swings) else np.empty(0)
+    turned = sorted((a, b) for foot in way.feet.values() for a, b in foot.turned_s.tolist())
     found = []
     for landed_s, off_s in zip(landed[:-1].tolist(), swings[1:, 0].tolist(), strict=True):
-        is_received = not way.silences_in(landed_s - LOST_SWING_S, off_s + LOST_SWING_S)
-        if off_s - landed_s >= STILL_S and is_received:
-            found.append((landed_s, off_s))
+        edges = [landed_s, *(t for a, b in turned if landed_s < a and b < off_s for t in (a, b)), off_s]
+        for from_s, to_s in zip(edges[::2], edges[1::2], strict=True):
+            is_received = not way.silences_in(from_s - LOST_SWING_S, to_s + LOST_SWING_S)
+            if to_s - from_s >= STILL_S and is_received:
+                found.append((from_s, to_s))
     return tuple(found)
 
 
