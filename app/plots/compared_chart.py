@@ -66,12 +66,13 @@ class ComparedFrame(Card):
     def note(self) -> str:
         return self._note.text()
 
-    def show_verdict(self, verdict: Verdict) -> None:
-        """Say beside the joint what may be read of all its curves."""
+    def show_verdict(self, verdict: Verdict, why: str = "") -> None:
+        """Say beside the joint what may be read of all its curves, and under the mouse why."""
         self._verdict_mark.set_icon(VERDICT_ICONS[verdict])
         self.verdict.setText(verdict_alone(verdict))
         for part in (self._verdict_mark, self.verdict):
             part.setVisible(verdict is not Verdict.NOT_MEASURED)
+            part.setToolTip(why)
 
     def show_curves(
         self, curves: Sequence[StrideCurve], note: str, is_simulated: bool, *, is_about_mean: bool = False

@@ -80,7 +80,7 @@ class WalkingStep(Step):
         if self._page is None:
             page = self._page = WalkingPage(self.bench.entry)
             page.bench.alignments.chosen.connect(self.bench.choose)
-            page.bench.alignments.reported.connect(self._on_change_reported)
+            page.bench.alignments.fields.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
             page.keep_pressed.connect(self._on_keep_pressed)
@@ -235,6 +235,8 @@ class WalkingStep(Step):
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
                 self.discard()
+            case KeyAction.ENTER_CHANGE if self.bench.is_shown and not self._visit.recordings.is_recording:
+                self.page.bench.focus_entry()
             case KeyAction.LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
                 self.bench.choose(intent.number - 1, is_beside=False)
             case KeyAction.SECOND_LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:

@@ -114,7 +114,7 @@ def test_space_starts_and_stops_and_keeps(
     assert bar.primary is not None
     assert (bar.primary.text, [one.text for one in bar.others]) == ("Include A", ["Repeat A"])
     for _ in range(2):
-        QTest.keyClick(step.page.bench.alignments.steppers["turns"], Qt.Key.Key_Plus)
+        QTest.keyClick(step.page.bench.alignments.fields.steppers["turns"], Qt.Key.Key_Plus)
     assert [one.text for one in step.bar().others] == ["Walk with B"]
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)  # keeps it, and starts the next
@@ -255,7 +255,7 @@ def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_reported_of_th
         raise LibraryError("A recording needs 620 MB of free disk", "Delete files")
 
     monkeypatch.setattr(Recorder, "begin", refuse)
-    step.page.bench.alignments.steppers["turns"].stepped.emit(1)
+    step.page.bench.alignments.fields.steppers["turns"].stepped.emit(1)
     step.on_intent(Intent(KeyAction.NEXT_TEST))
     with qtbot.waitSignal(visit.recordings.refused, timeout=PATIENCE_MS):
         step.on_intent(RUN)
