@@ -154,13 +154,17 @@ class _AlignmentRow(Painted):
         left, width = px(PADDING + BADGE + GAP), self.width()
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.reported.role]
         aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
-        right = QRectF(width - aside, px(PADDING + LINE), aside - px(PADDING), px(LINE))
-        beside_cap = width - left - px(PADDING + CAP + 4)
+        before_cap = width - px(PADDING + CAP + 4)
+        right = QRectF(before_cap - aside, px(PADDING), aside - px(PADDING), px(LINE))
         texts = [
-            PaintedText(self.reported.title, QRectF(left, px(PADDING), beside_cap, px(LINE)), theme.font(14, SEMIBOLD)),
+            PaintedText(
+                self.reported.title,
+                QRectF(left, px(PADDING), before_cap - aside - left, px(LINE)),
+                theme.font(14, SEMIBOLD),
+            ),
             PaintedText(
                 self.reported.note,
-                QRectF(left, px(PADDING + LINE), width - left - aside, px(LINE)),
+                QRectF(left, px(PADDING + LINE), width - left - px(PADDING), px(LINE)),
                 theme.font(12),
                 "ink2",
             ),

@@ -25,16 +25,16 @@ NUMBERS = ("setting_before", "setting_value")
 SWITCHED_PARTS = (ProsthesisPart.FOOT, ProsthesisPart.KNEE_UNIT)  # with programs and settings
 
 
-class Topic(NamedTuple):
+class EntryTopic(NamedTuple):
     """What is entered at once: the position of a part, or its program and a setting."""
 
     part: ProsthesisPart
     is_program: bool = False
 
 
-def _topics_of(part: ProsthesisPart) -> list[Topic]:
-    positions = [Topic(part)] if part is not ProsthesisPart.FOOT else []  # its screws and its rotation are moved
-    return [*positions, Topic(part, is_program=True)] if part in SWITCHED_PARTS else positions
+def _topics_of(part: ProsthesisPart) -> list[EntryTopic]:
+    positions = [EntryTopic(part)] if part is not ProsthesisPart.FOOT else []  # its screws and its rotation are moved
+    return [*positions, EntryTopic(part, is_program=True)] if part in SWITCHED_PARTS else positions
 
 
 TOPICS = tuple(topic for part in ProsthesisPart for topic in _topics_of(part))
@@ -58,7 +58,7 @@ class KnownStates:
 class ChangeEntry:
     """The next change while it is entered: each part has its figures and words, and `part` is the one in hand.
 
-    `known`: what programs and settings are now; it stands for what they were where nobody enters it.
+    `known`: what programs and settings are now: what they were before the change, unless somebody enters it.
     """
 
     def __init__(self) -> None:
@@ -71,11 +71,11 @@ class ChangeEntry:
         self._numbers: dict[ProsthesisPart, dict[str, float]] = {}
 
     @property
-    def topic(self) -> Topic:
-        return Topic(self.part, self.is_program)
+    def topic(self) -> EntryTopic:
+        return EntryTopic(self.part, self.is_program)
 
     @topic.setter
-    def topic(self, topic: Topic) -> None:
+    def topic(self, topic: EntryTopic) -> None:
         self.part, self.is_program = topic
 
     def figure(self, name: str) -> float:

@@ -37,8 +37,8 @@ PADDING = 12
 SCALE = 1.8  # errors, to either edge of a strip
 ROW, HEAD, LINE = 24, 20, 15
 LINES_CLOSER = 7  # px: what two lines leave free of the room of one
-LETTERS_IN_LINE = 24
-STRIP = 84
+LETTERS_IN_LINE, LETTERS_BEFORE_COMMA = 24, 20
+STRIP = 58
 
 
 class BenchDifferences(Card):
@@ -109,10 +109,11 @@ class BenchDifferences(Card):
     def _row(self, row: Compared) -> TableRow:
         weight = SEMIBOLD if row.exceeds else REGULAR
         tone = "ink2" if self._is_light else "ink"
-        change = change_in_words(row.difference.difference, row.measure) if row.is_reported else why_not_reported(row)
-        change = f"{MARKS[row.difference.mark]} {change}".strip()
-        name = tr(row.measure.name)
-        value = _Low(change, small=_error(row), align=RIGHT, weight=weight, tone=tone)
+        name, value = tr(row.measure.name), _Low(why_not_reported(row), align=RIGHT, size=12, tone="ink2")
+        if row.is_reported:
+            change = change_in_words(row.difference.difference, row.measure)
+            change = f"{MARKS[row.difference.mark]} {change}".strip()
+            value = _Low(change, small=_error(row), align=RIGHT, weight=weight, tone=tone)
         cells = (_Low(_in_lines(name), size=12, weight=weight, tone=tone), value, self._strip(row))
         return TableRow(cells, hint=_hint(row, name))
 
@@ -131,8 +132,8 @@ def _columns(is_light: bool) -> list[TableColumn]:
     change, error = (TextCell(tr("change"), align=RIGHT, size=12, tone="ink2") for _ in range(2))
     if not is_light:
         change = TextCell(tr("change ± error"), align=RIGHT, size=12, tone="ink2")
-        error = TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2")
-    about = tr("± is the measurement error: in 95 of 100 such measurements the true change is within it.")
+        error = TextCell(tr("error"), align=CENTRE, size=12, tone="ink2")
+    about = tr("± and grey are the measurement error: in 95 of 100 such measurements the true change is within it.")
     return [
         TableColumn(share=2),
         TableColumn(change, share=1, hint=about),
@@ -168,10 +169,10 @@ def _hint(row: Compared, name: str) -> str:
 
 def _in_lines(name: str) -> str:
     """A long name in two lines, the second after its comma where it has one."""
-    if len(name) <= LETTERS_IN_LINE:
-        return name
     first, comma, rest = name.partition(", ")
-    return f"{first},\n{rest}" if comma else "\n".join(textwrap.wrap(name, LETTERS_IN_LINE, break_long_words=False))
+    if comma and len(name) > LETTERS_BEFORE_COMMA:
+        return f"{first},\n{rest}"
+    return "\n".join(textwrap.wrap(name, LETTERS_IN_LINE, break_long_words=False))
 
 
 @dataclass(frozen=True, slots=True)

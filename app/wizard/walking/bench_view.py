@@ -30,7 +30,8 @@ from core.body import JointKind, Side
 from core.verdicts.model import worst
 
 LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 320
-BETWEEN = 16
+MORE_FOR_CHANGES = 60  # px: where there is room, which the curves have else
+BETWEEN = 12
 ANY_WIDTH = 16_777_215  # Qt's own
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
@@ -166,7 +167,9 @@ class BenchView(QWidget):
         list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
         curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
         changes = max(px(DIFFERENCES), self.differences.needed)
-        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self._room
+        spare = self._room - list_width - curves - changes - 2 * px(BETWEEN)
+        is_tabbed = self._is_compact or spare < 0
+        changes += min(spare // 2, px(MORE_FOR_CHANGES)) if spare > 0 else 0
         self.tabs.setVisible(is_tabbed)
         self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
         cards: tuple[tuple[str, QWidget, int], ...] = (

@@ -46,7 +46,7 @@ class EntryFields(QWidget):
         self.setting = Field(tr("Setting, by its name"), most=MOST_NAME)
         before, now = (
             NumberField(label, low=-MOST_SETTING, high=MOST_SETTING, decimals=DECIMALS)
-            for label in (tr("Setting before"), tr("Setting now"))
+            for label in (tr("Value before"), tr("Value now"))
         )
         self.setting_before, self.setting_value = before, now
         self.names = dict(zip(NAMES, (self.program_before, self.program, self.setting), strict=True))

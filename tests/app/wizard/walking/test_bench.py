@@ -15,7 +15,7 @@ from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.widgets.table_cells import TextCell
 from app.wizard.visit import Visit
-from app.wizard.walking.bench import TOPICS, ChangeEntry, Topic, chain_of, next_walk
+from app.wizard.walking.bench import TOPICS, ChangeEntry, EntryTopic, chain_of, next_walk
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.bench_differences import BenchDifferences
 from app.wizard.walking.bench_words import Outcome, bench_answer
@@ -471,7 +471,7 @@ def test_the_next_change_is_reported_by_keys_and_reads_as_it_prints(page: Walkin
     assert card.fields.written.text() == "Recorded as: Foot, anterior screw ½ turn out, +2° plantar"
     assert card.next_title.text() == "D: changed from C"
     assert card.fields.steppers["turns"].accessibleName() == "Screw turns: ½ out"
-    card.fields.parts.setCurrentIndex(TOPICS.index(Topic(PYLON)))
+    card.fields.parts.setCurrentIndex(TOPICS.index(EntryTopic(PYLON)))
     QTest.keyClicks(card.fields.words.line_edit, "clamp")
     assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")
     assert card.fields.steppers["turns"].value == "0"
