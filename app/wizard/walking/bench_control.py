@@ -126,10 +126,9 @@ class Bench(QObject):
         """Something else can be taken back now."""
         self._may_undo_return = False
 
-    @property
-    def returned_to(self) -> str:
-        """The condition that the prosthesis was put back to since the latest walk; empty where it was not."""
-        return self._returned_to
+    def returns_as(self, label: str) -> bool:
+        """Whether the prosthesis was put back since the latest walk, and the next one is called so then."""
+        return bool(self._returned_to) and not self.entry.parts and self.next_walk()[0] == label
 
     @Slot(int, bool)
     def choose(self, number: int, is_beside: bool) -> None:

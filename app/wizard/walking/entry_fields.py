@@ -1,8 +1,8 @@
 """The next change as it is entered before its walk: a part's position by steps, or its program and a setting."""
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QApplication, QGridLayout, QLineEdit, QWidget
+from PySide6.QtWidgets import QGridLayout, QWidget
 
 from app.theme.current import scaled
 from app.widgets.choice import Choice
@@ -55,6 +55,8 @@ class EntryFields(QWidget):
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
         scaled(self._grid.setSpacing, 8)
+        for widget in (*self.steppers.values(), self.words, *self.names.values(), *self.numbers.values()):
+            widget.setParent(self)  # what is shown without one is a window, and takes the keys
         self._connect()
         self._arrange()
 
@@ -97,16 +99,18 @@ class EntryFields(QWidget):
         line = change_in_words(entry.parts)
         self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
-    def keyPressEvent(self, event: QKeyEvent) -> None:
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Take Enter, which would press the filled button, and the arrows that a field of numbers has no use for."""
-        focused = QApplication.focusWidget()
-        number = next((name for name, field in self.numbers.items() if field.line_edit is focused), "")
-        if event.key() in ENTER and isinstance(focused, QLineEdit):
+        if event.type() is not QEvent.Type.KeyPress or not isinstance(event, QKeyEvent):
+            return False
+        number = next((name for name, field in self.numbers.items() if field.line_edit is watched), "")
+        if event.key() in ENTER:
             self.left.emit()
         elif number and event.key() in BY_ONE:
             self._step_number(number, BY_ONE[Qt.Key(event.key())])
         else:
-            super().keyPressEvent(event)
+            return False
+        return True
 
     def _show_switched(self) -> None:
         entry = self._entry
@@ -126,6 +130,8 @@ class EntryFields(QWidget):
         self.words.edited.connect(self._on_words_edited)
         for field in (*self.names.values(), *self.numbers.values()):
             field.edited.connect(self._on_switched)
+        for typed in (self.words, *self.names.values(), *self.numbers.values()):
+            typed.line_edit.installEventFilter(self)
 
     def _arrange(self) -> None:
         """Put in place what the chosen topic asks for."""

@@ -201,7 +201,7 @@ class WalkingStep(Step):
         """Say that the prosthesis is put back to where it began."""
         if stated := self.bench.return_to_first():
             self._kept = self._discarded = None
-            self._label = self.bench.returned_to
+            self._label = self.bench.next_walk()[0]
             self._show()
             self.offered.emit(stated)
 
@@ -285,7 +285,7 @@ class WalkingStep(Step):
         self._at_stop = None
         self.page.count_again()
         label, alignment = self._label, None
-        if self.bench.is_shown:
+        if self.bench.is_shown or self.bench.returns_as(label):
             label, alignment = self.bench.next_walk()
             acquisition.set_up(self.bench.chain.set_so(label, alignment))
         acquisition.ask(RecordingKind.WALKING)

@@ -126,8 +126,14 @@ def test_space_starts_and_stops_and_keeps(
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
     assert not bar_states_change(step)
     assert next_label(step) == "Next: Alignment C"
+    back = next(one for one in step.bar().others if one.text == "Return to A")
+    assert back.key == "R"
     press(step, "Return to A")
-    assert next_label(step) == "Next: Alignment A"
+    assert next_label(step) == "Next: Alignment A again"
+    assert [one.text for one in step.bar().others] == ["Walk with A2"]
+    assert step.bench.next_walk()[1] == AlignmentChange(
+        "Alignment B", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=-0.25),), returns_to="Alignment A"
+    )
     step.undo()
     assert next_label(step) == "Next: Alignment C"
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
