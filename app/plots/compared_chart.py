@@ -47,7 +47,7 @@ class ComparedFrame(Card):
         super().__init__(padding=12, spacing=2)
         self._side, self._kind = side, kind
         self.chart = chart
-        self._mark = IconMark(Icon.DIFFERENCE, size=18)
+        self._mark = IconMark(Icon.INFO, size=18)
         self._note = Text(size=12, weight=MEDIUM, wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._verdict_mark = IconMark(VERDICT_ICONS[Verdict.READ], size=16)

@@ -359,7 +359,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis and the first 
             ("results*/**/alignments.csv", " A,knee_unit,,1.5,,"),
             ("results*/**/alignments.csv", ",Walk 1,Walk 2,,,,"),
             ("results*/**/alignments.csv", " B,knee_unit,4,,,"),
-            ("results*/**/alignments.csv", " C,knee_unit,,,,,,Knee unit: program Walk 1"),
+            ("results*/**/alignments.csv", ' C,knee_unit,,,,,,"Knee unit: program Walk 1'),
             ("results*/**/alignments.csv", "Walk 2,Walk 1,,,,"),
             ("results*/**/summary.json", "returns_to"),
             ("results*/**/summary.json", "foot_front_screw"),

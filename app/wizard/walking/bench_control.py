@@ -192,11 +192,15 @@ class Bench(QObject):
 
     @property
     def _is_behind(self) -> bool:
-        """Whether a walk that counts is not among those that are shown."""
+        """Whether a walk that counts is not among those that are shown, or only a part of it: it was going on then."""
         session = self._visit.evaluation.session
-        known = {recording.name for recording in session.recordings} if session is not None else set()
-        counting = {one.details.name for one in self._visit.recordings.walks if one.details.is_kept}
-        return self._visit.evaluation.is_busy or not counting <= known
+        known = {one.name: one.imu for one in session.recordings} if session is not None else {}
+        for one in self._visit.recordings.walks:
+            if one.details.is_kept:
+                is_known, whole = one.details.name in known, one.read_back
+                if not is_known or (whole is not None and known[one.details.name] is not whole.imu):
+                    return True
+        return self._visit.evaluation.is_busy
 
     def _parts(self) -> tuple[Part, ...]:
         evaluation = self._visit.evaluation

@@ -1,5 +1,7 @@
 """The next change as it is entered before its walk: a part's position by steps, or its program and a setting."""
 
+from itertools import pairwise
+
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QWidget
@@ -55,17 +57,19 @@ class EntryFields(QWidget):
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
         scaled(self._grid.setSpacing, 8)
-        for widget in (*self.steppers.values(), self.words, *self.names.values(), *self.numbers.values()):
+        switches: list[QWidget] = [*self.names.values(), *self.numbers.values()]
+        for widget in (self.parts, *self.steppers.values(), self.words, *switches):
             widget.setParent(self)  # what is shown without one is a window, and takes the keys
+        for before, after in pairwise(self.tab_order):
+            QWidget.setTabOrder(before, after)
         self._connect()
         self._arrange()
 
     @property
     def tab_order(self) -> list[QWidget]:
-        """The controls that are in sight, in the order of reading."""
-        if self._entry.is_program:
-            return [self.parts, *(field.line_edit for field in (*self.names.values(), *self.numbers.values()))]
-        return [self.parts, *self.steppers.values(), self.words.line_edit]
+        """The controls in the order of reading; those of the other topic are hidden, where Tab finds none."""
+        typed = (self.words, *self.names.values(), *self.numbers.values())
+        return [self.parts, *self.steppers.values(), *(field.line_edit for field in typed)]
 
     def set_compact(self, is_compact: bool) -> None:
         """Show all in two rows where there is the width of the window, and little height."""

@@ -234,7 +234,7 @@ AGAIN = AlignmentChange("Alignment C", (PartChange(PYLON, height_mm=-2.0),), ret
 def walked_again(visit: SimpleNamespace, letter: str = "A again", **reported: Any) -> Recording:
     """A walk more with the first alignment, 6° more of the knee; letter "A": as earlier versions stored it."""
     again = recording(4, letter, AGAIN if letter == "A again" else None, **reported)
-    every = [*visit.recordings.every, SimpleNamespace(details=again)]
+    every = [*visit.recordings.every, SimpleNamespace(details=again, read_back=None)]
     visit.recordings.every = visit.recordings.walks = every
     evaluation = visit.evaluation
     one = judged_walk(walk(left=leg(Side.LEFT, knee_range_deg=66.0), name="walk 4", folder="walk 4"))
@@ -350,7 +350,10 @@ def test_a_discarded_walk_after_the_return_leaves_the_prosthesis_as_it_is(bench:
 def test_a_discarded_walks_change_is_reported_again_of_the_next(bench: Bench, visit: SimpleNamespace) -> None:
     change = AlignmentChange("Alignment C", (PartChange(PYLON, turns=1.0),))
     walk = recording(4, "D", change, is_kept=False)
-    visit.recordings.walks = visit.recordings.every = [*visit.recordings.every, SimpleNamespace(details=walk)]
+    visit.recordings.walks = visit.recordings.every = [
+        *visit.recordings.every,
+        SimpleNamespace(details=walk, read_back=None),
+    ]
     bench.discarded(walk)
     assert bench.entry.parts == change.parts
     bench.begun()
@@ -367,7 +370,7 @@ def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, vis
     visit.prosthetic_sides = frozenset({Side.LEFT})
     visit.recordings.walks = []
     offered.append(bench.is_offered)
-    visit.recordings.walks = [SimpleNamespace(details=replace(WALKED[0], condition="Barefoot"))]
+    visit.recordings.walks = [SimpleNamespace(details=replace(WALKED[0], condition="Barefoot"), read_back=None)]
     offered.append(bench.is_offered)
     assert offered == [True, False, False, False]
 
@@ -387,6 +390,17 @@ def test_while_a_walk_is_analysed_nothing_is_stated_of_the_ones_before(bench: Be
     state = bench.state()
     assert state is not None
     assert "10.0° more than with A" in state.answer.first
+
+
+def test_of_a_walk_that_was_seen_in_part_only_nothing_is_stated(bench: Bench, visit: SimpleNamespace) -> None:
+    visit.recordings.walks[-1].read_back = SimpleNamespace(imu={})  # whole, after Stop
+    state = bench.state()
+    assert state is not None
+    assert (state.answer.first, state.notes) == ("The walk is being analysed.", ())
+    visit.recordings.walks[-1].read_back = SimpleNamespace(imu=visit.evaluation.session.recordings[-1].imu)
+    state = bench.state()
+    assert state is not None
+    assert "with C" in state.answer.first
 
 
 def test_a_walk_whose_analysis_ended_early_is_not_stated_to_be_analysed(bench: Bench, visit: SimpleNamespace) -> None:
@@ -519,7 +533,8 @@ def test_in_a_small_window_the_next_change_is_reported_without_scrolling(page: W
     page.set_compact(True)
     page.resize(896, 420)
     QTest.qWait(50)
-    for widget in (*page.bench.alignments.fields.tab_order, page.bench.alignments.fields.written):
+    fields = page.bench.alignments.fields
+    for widget in (fields.parts, *fields.steppers.values(), fields.words.line_edit, fields.written):
         assert widget.isVisible()
         seen = widget.visibleRegion().boundingRect()
         assert seen.size() == widget.size(), widget.accessibleName()

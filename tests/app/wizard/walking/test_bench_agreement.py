@@ -24,8 +24,7 @@ from core.body import Side
 from core.samples import FloatArray
 from core.session import RecordingKind
 from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S
-from devices.simulation.replay import DEMONSTRATION
-from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Walk
+from devices.simulation.walker import DEMONSTRATION, PEOPLE, FreeMotion, Standing, Walk
 from devices.simulation.walker_prosthesis import ProsthesisSetting
 from tests.simulated import analysis_of, session_of
 
@@ -95,12 +94,12 @@ def drawn_setting(seed: int) -> ProsthesisSetting:
 def fitted(seed: int) -> SimpleNamespace:
     """A visit with two alignments, A as it is built and B as drawn, each walked once."""
     side = list(Side)[seed % 2]
-    walks = [
+    walks: list[Standing | FreeMotion | Walk] = [
         Walk(f"walk {k}", speed_m_s=SPEED_M_S, strides=14, standing_before_s=1.0, prosthesis=setting)
         for k, setting in enumerate((BUILT, drawn_setting(seed)), start=1)
     ]
-    recordings = (Standing(duration_s=4.0), FreeMotion(duration_s=6.0), *walks)
-    settings = replace(DEMONSTRATION, seed=seed, prosthetic_side=side, variation=PEOPLE, recordings=recordings)
+    first = (Standing(duration_s=4.0), FreeMotion(duration_s=6.0))
+    settings = replace(DEMONSTRATION, seed=seed, prosthetic_side=side, variation=PEOPLE, recordings=(*first, *walks))
     session = session_of(settings)
     changed = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=1.0),))
     reported = {"walk 1": ("Alignment A", None), "walk 2": ("Alignment B", changed)}
@@ -109,7 +108,7 @@ def fitted(seed: int) -> SimpleNamespace:
         for one in session.recordings
     )
     session = replace(session, recordings=named)
-    every = [SimpleNamespace(details=one) for one in named]
+    every = [SimpleNamespace(details=one, read_back=None) for one in named]
     return SimpleNamespace(
         prosthetic_sides=frozenset({side}),
         recordings=SimpleNamespace(

@@ -64,6 +64,15 @@ def test_the_chooser_decides_what_is_asked_and_each_is_reached_by_tab(fields: En
     assert not fields.program.isVisible()
 
 
+def test_tab_goes_through_what_is_asked_in_the_order_of_reading(fields: EntryFields) -> None:
+    for topic in (EntryTopic(KNEE, is_program=True), EntryTopic(PYLON)):
+        chosen(fields, topic)
+        fields.parts.setFocus()
+        for widget in tabs(fields)[1:]:
+            QTest.keyClick(fields.window().focusWidget() or fields, Key.Key_Tab)
+            assert fields.window().focusWidget() is widget, widget.accessibleName()
+
+
 def test_a_program_and_a_setting_are_typed_and_read_as_they_print(fields: EntryFields, entry: ChangeEntry) -> None:
     chosen(fields, EntryTopic(KNEE, is_program=True))
     QTest.keyClicks(fields.program_before.line_edit, "Walk 1")
