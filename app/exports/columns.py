@@ -368,6 +368,12 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "height_mm": ColumnMeaning("height of the part", sign="positive: longer or higher"),
         "text": _word("what somebody has typed of it"),
         "in_words": _word("the change in a line"),
+        "program_before": _word("the program of the part before; empty: not recorded"),
+        "program": _word("the program of the part from then on; empty: not recorded"),
+        "setting": _word("what the part's maker calls the setting that was changed"),
+        "setting_before": ColumnMeaning("its number before; empty: not recorded", unit="as the maker counts"),
+        "setting_value": ColumnMeaning("its number from then on; empty: not recorded", unit="as the maker counts"),
+        "returns_to": _word("the earlier condition that this one is again; empty of all others"),
     },
     "set_angles.csv": {
         "condition": _word("what the walk is called"),

@@ -161,7 +161,7 @@ def _beyond_limits(name: str, values_deg: FloatArray, limits_deg: tuple[float, f
         if count := int(np.count_nonzero(beyond_deg > 0)):
             most_deg = float(np.nanmax(beyond_deg))
             lines.append(
-                f"Kept at the model's limit of {limit_deg:g} deg: {name}, {count} rows, up to {most_deg:.1f} deg beyond."
+                f"Kept at the model's limit {limit_deg:g} deg: {name}, {count} rows, up to {most_deg:.1f} deg beyond."
             )
     return lines
 

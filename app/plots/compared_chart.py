@@ -47,7 +47,7 @@ class ComparedFrame(Card):
         super().__init__(padding=12, spacing=2)
         self._side, self._kind = side, kind
         self.chart = chart
-        self._mark = IconMark(Icon.DIFFERENCE, size=18)
+        self._mark = IconMark(Icon.INFO, size=18)
         self._note = Text(size=12, weight=MEDIUM, wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._verdict_mark = IconMark(VERDICT_ICONS[Verdict.READ], size=16)
@@ -66,12 +66,13 @@ class ComparedFrame(Card):
     def note(self) -> str:
         return self._note.text()
 
-    def show_verdict(self, verdict: Verdict) -> None:
-        """Say beside the joint what may be read of all its curves."""
+    def show_verdict(self, verdict: Verdict, why: str = "") -> None:
+        """Say beside the joint what may be read of all its curves, and under the mouse why."""
         self._verdict_mark.set_icon(VERDICT_ICONS[verdict])
         self.verdict.setText(verdict_alone(verdict))
         for part in (self._verdict_mark, self.verdict):
             part.setVisible(verdict is not Verdict.NOT_MEASURED)
+            part.setToolTip(why)
 
     def show_curves(
         self, curves: Sequence[StrideCurve], note: str, is_simulated: bool, *, is_about_mean: bool = False

@@ -174,22 +174,25 @@ def _sensor(info: SensorInfo, names: Mapping[str, str], clocks: Mapping[str, str
 def _alignment(
     reported: AlignmentChange | None, conditions: Mapping[str, str], *, is_kept: bool
 ) -> AlignmentChange | None:
-    """What was changed, with our word for the condition before. Without words what only they give is left out."""
+    """What was changed, with our words for conditions. Without words what only they give is left out."""
     if reported is None:
         return None
     stated = (one if is_kept else _without_words(one) for one in reported.parts)
     parts = tuple(one for one in stated if one is not None)
-    return AlignmentChange(conditions.get(reported.since, ""), parts) if parts else None
+    returns_to = conditions.get(reported.returns_to, "")
+    return AlignmentChange(conditions.get(reported.since, ""), parts, returns_to) if parts or returns_to else None
 
 
 def _without_words(reported: PartChange) -> PartChange | None:
-    """The figures alone; None where there are none."""
-    return replace(reported, text="") if any(getattr(reported, name) for name in FIGURES) else None
+    """The figures alone; None where there are none. A setting's number means nothing without its name."""
+    figures = {name: getattr(reported, name) for name in FIGURES}
+    return PartChange(reported.part, **figures) if any(figures.values()) else None
 
 
 def _conditions(session: Session, *, is_kept: bool) -> Mapping[str, str]:
     typed = [recording.condition for recording in session.recordings]
-    typed += [recording.alignment.since for recording in session.recordings if recording.alignment is not None]
+    changes = [recording.alignment for recording in session.recordings if recording.alignment is not None]
+    typed += [name for change in changes for name in (change.since, change.returns_to)]
     return {one: one for one in typed} if is_kept else _numbers("condition", typed)
 
 

@@ -15,6 +15,7 @@ ALIGNMENTS = "alignments.csv"
 HEADER = (
     *("walk", "condition", "since", "part"),
     *("angle_deg", "turns", "shift_mm", "height_mm", "text", "in_words"),
+    *("program_before", "program", "setting", "setting_before", "setting_value", "returns_to"),
 )
 
 
@@ -56,4 +57,7 @@ def _cells(recording: Recording, change: AlignmentChange, part: PartChange) -> l
         *(f"{value:g}" if value else "" for value in figures),
         typed_cell(part.text),
         typed_cell(change_in_words([part])),
+        *map(typed_cell, (part.program_before, part.program, part.setting)),
+        *("" if value is None else f"{value:g}" for value in (part.setting_before, part.setting_value)),
+        typed_cell(change.returns_to),
     ]

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from app.charts.marks import Deviation, extreme_of
-from app.summary.comparison import Comparison, Contrast
+from app.summary.comparison import Compared, Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.summary.marks_on_curves import windows_of
 from app.summary.numbers_in_words import fixed
@@ -57,22 +57,29 @@ def changes_on_curves(found: Comparison) -> list[Deviation]:
     rows = sorted((row for row in found.rows if row.exceeds), key=lambda row: -row.difference.ratio)
     marked = []
     for kind in JointKind:
-        of_kind = (row for row in rows if row.measure.kind == kind and BY_COLUMN[row.measure.column].rests_on in MARKED)
-        if (row := next(of_kind, None)) is None:
-            continue
-        measure, joint = row.measure, kind.of(row.side)
-        curve_deg = row.part.cycle(joint).mean
-        high, low = windows_of(measure.column)
-        pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
-        apart = fixed(abs(row.difference.difference), measure.decimals) + measure.unit
-        size = fixed(row.value.mean, measure.decimals) + measure.unit
-        marked.append(
-            Deviation(
-                extreme_of(joint, curve_deg, *low, is_maximum=False),
-                extreme_of(joint, curve_deg, *high, is_maximum=True),
-                words=f"{row.side.letter} {size}",
-                more=pattern.format(size=apart, other=row.against.name),
-                is_larger_than_error=True,
-            )
-        )
+        row = next((row for row in rows if row.measure.kind == kind and can_be_marked(row)), None)
+        if row is not None:
+            marked.append(change_on_curve(row, row.side.letter, row.against.name))
     return marked
+
+
+def can_be_marked(row: Compared) -> bool:
+    """Whether a measure is a movement between two points of a curve."""
+    return bool(row.measure.kind) and BY_COLUMN[row.measure.column].rests_on in MARKED
+
+
+def change_on_curve(row: Compared, called: str, other: str) -> Deviation:
+    """A movement on the curve of the walk shown: `called`, its size, and how much that is from `other`."""
+    measure, joint = row.measure, JointKind(row.measure.kind).of(row.side)
+    curve_deg = row.part.cycle(joint).mean
+    high, low = windows_of(measure.column)
+    pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
+    apart = fixed(abs(row.difference.difference), measure.decimals) + measure.unit
+    size = fixed(row.value.mean, measure.decimals) + measure.unit
+    return Deviation(
+        extreme_of(joint, curve_deg, *low, is_maximum=False),
+        extreme_of(joint, curve_deg, *high, is_maximum=True),
+        words=f"{called} {size}",
+        more=pattern.format(size=apart, other=other),
+        is_larger_than_error=True,
+    )

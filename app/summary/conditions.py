@@ -80,9 +80,15 @@ class Part:
         """As a chart's key has room for: the day of another visit, else its name."""
         return short_date(self.day) if self.day is not None else self.name
 
+    @property
+    def returned_to(self) -> str:
+        """The condition that it is: its own, or the earlier one that the prosthesis was put back to before it."""
+        return (self.alignment.returns_to if self.alignment is not None else "") or self.name
+
     def is_again(self, other: "Part") -> bool:
         """Whether it is the condition of another part, which the prosthesis was put back to since."""
-        return self is not other and (self.name, self.attachment) == (other.name, other.attachment)
+        is_same = (self.returned_to, self.attachment) == (other.returned_to, other.attachment)
+        return self is not other and is_same
 
     @property
     def joints(self) -> tuple[Joint, ...]:

@@ -95,7 +95,7 @@ OTHER_BESIDE = (
 
 def change_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
     """State a measure and its change: "Left knee flexes 54° in B, 5° more ..."; empty `who`: the whole walk."""
-    decimals = _decimals(column, now.value, before.value, difference)
+    decimals = agreeing_decimals(column, now.value, before.value, difference)
     value, size = _figures(column, (now.value, abs(difference)), decimals)
     other = fixed(before.value, decimals) + unit_and_decimals(column)[0]
     pattern = CLAUSES.get(column, OTHER_OF_LEG if who else OTHER)
@@ -110,7 +110,7 @@ def change_sentence(column: str, who: str, difference: float, now: Reported, bef
 
 def similar_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
     """The same where the difference may be error: both values."""
-    decimals = _decimals(column, now.value, before.value, difference)
+    decimals = agreeing_decimals(column, now.value, before.value, difference)
     value, other = _figures(column, (now.value, before.value), decimals)
     stated = tr("{who}: {measure} is similar {before} and {now}, {other} and {value}.")
     if not who:
@@ -140,7 +140,8 @@ def joint_of_role(leg: str, joint: Joint) -> str:
     return tr("{side} {joint}").format(side=leg, joint=kind)
 
 
-def _decimals(column: str, value: float, other: float, difference: float) -> int:
+def agreeing_decimals(column: str, value: float, other: float, difference: float) -> int:
+    """With how many decimals two values and their difference are stated; one more where these would not agree."""
     _, decimals = unit_and_decimals(column)
     disagree = round(round(value, decimals) - round(other, decimals), decimals) != round(difference, decimals)
     return decimals + disagree

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from app.summary.alignments import alignments_of
 from app.summary.conditions import Part
 from app.summary.course_lanes import CourseVisit
-from app.summary.visits import by_condition
+from app.summary.visits import by_stated_condition
 from app.wording.recordings import ShownName, shown_names
+from core.alignment import root_of
 from core.results import Analysis, RecordingAnalysis
 from core.session import Recording, RecordingKind, Session
 
@@ -83,12 +85,21 @@ class ReportRequest:
 
 
 def default_walks(visit: AnalysedVisit) -> tuple[str, ...]:
-    """Choose the walk with most usable strides for each of the last conditions; empty: no walk was analysed."""
+    """Choose the walk with most usable strides for each of the last conditions; empty: no walk was analysed.
+
+    Of a chain of alignments the one that it began with comes first.
+    """
     names = visit.walk_names()
-    parts = by_condition(visit.analysis, visit.session.recordings).values()
+    parts = by_stated_condition(visit.analysis, visit.session.recordings).values()
     by_time = sorted(parts, key=lambda part: max(names.index(walk.name) for walk in part.walks))
-    most = [max(part.walks, key=_usable_strides).name for part in by_time]
-    return tuple(most[-MAX_CONDITIONS:]) or names[-1:]
+    chosen = by_time[-MAX_CONDITIONS:]
+    changes = alignments_of(visit.session.recordings)
+    start = root_of(changes, chosen[-1].name) if chosen else ""
+    first = next((part for part in by_time if part.name == start and changes.get(chosen[-1].name) is not None), None)
+    if first is not None and first not in chosen:
+        chosen = [first, *chosen[1:]]
+    most = [max(part.walks, key=_usable_strides).name for part in chosen]
+    return tuple(most) or names[-1:]
 
 
 def _usable_strides(walk: RecordingAnalysis) -> int:

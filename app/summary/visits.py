@@ -10,7 +10,7 @@ from datetime import date
 from typing import NamedTuple
 
 from app.summary.conditions import Part, conditions_of
-from app.wording.recordings import name_in_words
+from app.wording.recordings import condition_returned_to, name_in_words
 from app.wording.translation import tr
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
@@ -39,8 +39,25 @@ class ComparedVisits:
 def by_condition(
     analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
 ) -> Mapping[str, Part]:
-    """Each condition of a visit as it was walked last: of several strappings the last, and so of walks without one."""
+    """Each condition of a visit as it was walked last: of several strappings the last, and so of walks without one.
+
+    An alignment that the prosthesis was put back to is the earlier one again.
+    """
+    stated = {recording.name: condition_returned_to(recording) for recording in recordings}
+    return _latest(stated, analysis, recordings, prefix, agreed)
+
+
+def by_stated_condition(
+    analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
+) -> Mapping[str, Part]:
+    """The same with what the prosthesis was put back to beside what it was at first."""
     stated = {recording.name: recording.condition for recording in recordings}
+    return _latest(stated, analysis, recordings, prefix, agreed)
+
+
+def _latest(
+    stated: Mapping[str, str], analysis: Analysis, recordings: Sequence[Recording], prefix: str, agreed: AgreedGoals
+) -> Mapping[str, Part]:
     found: dict[str, Part] = {}
     for part in conditions_of(analysis, recordings, prefix, agreed):
         condition = stated.get(part.walks[0].name, "")
@@ -73,7 +90,7 @@ def parts_of_visits(visits: Sequence[WalkedVisit]) -> tuple[Part, ...]:
     return tuple(
         replace(part, name=f"{visit.name}, {condition_in_words(condition)}", visit=number, day=visit.day)
         for number, visit in enumerate(visits, start=1)
-        for condition, part in by_condition(visit.analysis, visit.recordings, str(number), visit.agreed).items()
+        for condition, part in by_stated_condition(visit.analysis, visit.recordings, str(number), visit.agreed).items()
     )
 
 

@@ -40,6 +40,7 @@ class TableColumn:
     """`head`: shown above. `share`: its part of what the columns do not need; where none has one, the last takes all.
 
     `widest` is measured in place of all cells, which is for tables of hundreds of rows; `least`: px of the design.
+    `hint` explains its head under the mouse.
     """
 
     head: TableCell = EMPTY
@@ -47,6 +48,7 @@ class TableColumn:
     widest: TableCell | None = None
     least: int = 0
     is_hidden: bool = False
+    hint: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +113,8 @@ class TableModel(QAbstractTableModel):
                 return head.words
             case Qt.ItemDataRole.AccessibleTextRole:
                 return head.stated
+            case Qt.ItemDataRole.ToolTipRole:
+                return self.columns[section].hint or None
         return None
 
 

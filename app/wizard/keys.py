@@ -60,7 +60,7 @@ class KeyAction(Enum):
     PATIENT_SCREEN = auto()  # F8
     FULL_SCREEN = auto()  # F11
     NEXT_TEST = auto()  # T
-    COURSE = auto()  # C: the length of the test's course
+    ENTER_FIELDS = auto()  # C: of a test's course, or of a change at the prosthesis
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ _PLAIN: dict[int, KeyAction] = {
     _Key.Key_R: KeyAction.RIGHT_LEG,
     _Key.Key_I: KeyAction.IDENTIFY,
     _Key.Key_T: KeyAction.NEXT_TEST,
-    _Key.Key_C: KeyAction.COURSE,
+    _Key.Key_C: KeyAction.ENTER_FIELDS,
 }
 # what presenters' clickers send: forward and back, first and last, start, black screen, volume, media
 _OF_CLICKERS = frozenset(
@@ -113,7 +113,10 @@ _FUNCTIONS: dict[int, KeyAction] = {
     _Key.Key_F8: KeyAction.PATIENT_SCREEN,
     _Key.Key_F11: KeyAction.FULL_SCREEN,
 }
-_LETTERS = (KeyAction.KEEP, KeyAction.DISCARD, KeyAction.LEFT_LEG, KeyAction.RIGHT_LEG, KeyAction.IDENTIFY)
+_LETTERS = (
+    *(KeyAction.KEEP, KeyAction.DISCARD, KeyAction.LEFT_LEG, KeyAction.RIGHT_LEG, KeyAction.IDENTIFY),
+    KeyAction.ENTER_FIELDS,
+)
 _REPEATED_WHILE_HELD = {KeyAction.EARLIER, KeyAction.LATER, KeyAction.LARGER, KeyAction.SMALLER}
 _ENTER = (_Key.Key_Return, _Key.Key_Enter)
 _NO_LETTERS = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier

@@ -9,10 +9,11 @@ propose are read in the user's language, whichever they were stored in.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import accumulate
+from typing import NamedTuple
 
 from app.wording.translation import languages, later, spoken_in, tr
 from core.findings import Finding
@@ -26,6 +27,8 @@ OWN_NAMES = {  # in files, numbered by `SessionRecordings`
 }
 OWN_LABELS = (later("Barefoot"), later("Shoes"), later("AFO"), later("Shoes, stick"))
 ALIGNMENT = later("Alignment {letter}")
+ALIGNMENT_AGAIN = later("Alignment {letter} again")  # which the prosthesis was put back to, with its number from 2 on
+MOST_AGAIN = 9
 _OWN_NAME = re.compile(rf"({'|'.join(OWN_NAMES.values())})(?: (\d+))?")
 
 
@@ -48,7 +51,7 @@ def condition_letters(recordings: Sequence[Recording]) -> dict[str, str]:
     """Give the letter of each included walk's condition, by the walk's name; empty beyond Z.
 
     `recordings` are in order of time. A walk without a condition has a letter of its own, and so have the walks after
-    the sensors were attached again. Discarded walks have none.
+    the sensors were attached again. What returns to an earlier condition has its letter. Discarded walks have none.
     """
     letters = dict(zip(dict.fromkeys(_conditions(recordings).values()), LETTERS, strict=False))
     return {name: letters.get(condition, "") for name, condition in _conditions(recordings).items()}
@@ -69,10 +72,16 @@ def shown_names(recordings: Sequence[Recording]) -> dict[str, ShownName]:
     return found
 
 
+def condition_returned_to(recording: Recording) -> str:
+    """Give the condition of a walk, or the earlier one that it returns to; empty where none was stated."""
+    changed = recording.alignment
+    return (changed.returns_to if changed is not None else "") or recording.condition
+
+
 def name_in_words(name: str) -> str:
     """Put a name or a condition that we proposed into the user's language; one that somebody gave stays."""
     if (label := _own_labels().get(name.casefold())) is not None:
-        own_words = tr(label[0]).format(letter=label[1])
+        own_words = label.words()
         return name if own_words.casefold() == name.casefold() else own_words
     own = _OWN_NAME.fullmatch(name)
     if own is None:
@@ -81,14 +90,46 @@ def name_in_words(name: str) -> str:
     return f"{words[own[1]]} {own[2] or ''}".rstrip()
 
 
+def is_alignment(label: str) -> bool:
+    """Whether a label is one of ours for an alignment, in whichever language."""
+    found = _own_labels().get(label.casefold())
+    return found is not None and bool(found.letter)
+
+
+def label_again(condition: str, used: Collection[str]) -> str:
+    """Name an alignment that the prosthesis is put back to, by its letter or what it is called; none of `used`."""
+    own = _own_labels().get(condition.casefold())
+    for number in range(1, MOST_AGAIN + 1):
+        label = _Label(ALIGNMENT_AGAIN, own.letter, number).words() if own is not None and own.letter else ""
+        if not label:
+            label = _numbered(tr("{condition} again").format(condition=condition), number)
+        if label.casefold() not in {one.casefold() for one in used}:
+            return label
+    return label
+
+
+class _Label(NamedTuple):
+    """A label that we propose: the message, the letter of an alignment, and the number of one again."""
+
+    message: str
+    letter: str = ""
+    number: int = 1
+
+    def words(self, spoken: Callable[[str], str] = tr) -> str:
+        return _numbered(spoken(self.message).format(letter=self.letter), self.number)
+
+
+def _numbered(words: str, number: int) -> str:
+    return f"{words} {number}" if number > 1 else words
+
+
 @cache
-def _own_labels() -> dict[str, tuple[str, str]]:
-    """Each label that we propose in any language, and which one it is, with the letter of an alignment."""
-    found: dict[str, tuple[str, str]] = {}
-    for spoken in map(spoken_in, languages()):
-        found |= {spoken(label).casefold(): (label, "") for label in OWN_LABELS}
-        found |= {spoken(ALIGNMENT).format(letter=one).casefold(): (ALIGNMENT, one) for one in LETTERS}
-    return found
+def _own_labels() -> dict[str, _Label]:
+    """Each label that we propose in any language, and which one it is."""
+    own = [_Label(label) for label in OWN_LABELS]
+    own += [_Label(ALIGNMENT, one) for one in LETTERS]
+    own += [_Label(ALIGNMENT_AGAIN, one, number) for one in LETTERS for number in range(1, MOST_AGAIN + 1)]
+    return {label.words(spoken).casefold(): label for spoken in map(spoken_in, languages()) for label in own}
 
 
 def with_shown_names(finding: Finding, names: Mapping[str, ShownName]) -> Finding:
@@ -102,10 +143,10 @@ def where_shown(where: str, names: Mapping[str, ShownName]) -> str:
 
 
 def _conditions(recordings: Sequence[Recording]) -> dict[str, tuple[str, int]]:
-    """Each kept walk's condition, or its own name, and how often sensors had been strapped again by then."""
+    """Each kept walk's condition or own name, or what it returns to, and how often sensors were strapped again."""
     strapped = accumulate(one.is_restrapped_before for one in recordings)
     return {
-        one.name: (one.condition or one.name, count)
+        one.name: (condition_returned_to(one) or one.name, count)
         for one, count in zip(recordings, strapped, strict=True)
         if one.kind is RecordingKind.WALKING and one.is_kept
     }

@@ -119,7 +119,7 @@ def calibrate(visit: Visit, speed: float) -> None:
 def walked(step: WalkingStep, visit: Visit, painted: Painted, speed: float) -> tuple[float, float, float, float]:
     """One walk: seconds from Stop to read back, analysed, painted; processor time."""
     for _ in range(4):
-        step.page.bench.alignments.steppers["turns"].stepped.emit(1)
+        step.page.bench.alignments.fields.steppers["turns"].stepped.emit(1)
     count = len(visit.recordings.walks)
     step.on_intent(RUN)
     wait(lambda: visit.recordings.is_recording)

@@ -1,5 +1,7 @@
 """Changes of a prosthesis add up along a chain, are undone whole, and nothing implausible is taken for one."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +11,7 @@ from core.alignment import (
     NetChange,
     PartChange,
     ProsthesisPart,
+    Switched,
     added,
     alignment_of_table,
     alignment_of_text,
@@ -16,6 +19,7 @@ from core.alignment import (
     alignment_text,
     changed_between,
     net_of,
+    root_of,
     undoing,
 )
 
@@ -46,6 +50,76 @@ def test_what_undoes_changes_leaves_nothing_of_them(first: list[PartChange], sec
     assert added(*net, *undoing(net)) == ()
     assert added(*net_of(first), *net_of(second)) == net
     assert undoing(undoing(net)) == net
+
+
+KNEE = ProsthesisPart.KNEE_UNIT
+STATES = st.lists(st.one_of(st.none(), st.sampled_from(["Walk 1", "Walk 2", "Stairs"])), min_size=2, max_size=6)
+VALUES = st.lists(st.one_of(st.none(), st.integers(-100, 100).map(float)), min_size=2, max_size=6)
+
+
+def in_turn(programs: list[str | None], values: list[float | None]) -> list[PartChange]:
+    """Changes of which each begins where the one before has ended."""
+    found = [
+        PartChange(KNEE, program_before=one or "", program=other or "")
+        for one, other in pairwise(programs)
+        if one or other
+    ]
+    found += [
+        PartChange(KNEE, setting="Swing flexion", setting_before=one, setting_value=other)
+        for one, other in pairwise(values)
+        if (one, other) != (None, None)
+    ]
+    return found
+
+
+@given(STATES, VALUES)
+def test_of_programs_and_settings_the_first_state_and_the_last_count(
+    programs: list[str | None], values: list[float | None]
+) -> None:
+    net = net_of(in_turn(programs, values))
+    switched = {one.name: (one.before, one.after) for change in net for one in change.switched}
+    expected = {"": (programs[0], programs[-1]), "Swing flexion": (values[0], values[-1])}
+    assert switched == {name: (one, other) for name, (one, other) in expected.items() if one != other}
+    assert added(*net, *undoing(net)) == ()
+
+
+def test_a_program_is_undone_by_the_one_before_however_it_was_typed() -> None:
+    to_2 = PartChange(KNEE, program_before="Walk 1", program="Walk 2", setting="Stance", setting_value=5.0)
+    back = PartChange(KNEE, program_before="walk 2", program="WALK 1", setting="stance ", setting_before=5.0)
+    (done,) = net_of([to_2])
+    assert done.switched == (Switched("", "Walk 1", "Walk 2"), Switched("Stance", None, 5.0))
+    assert undoing([done])[0].switched == (Switched("", "Walk 2", "Walk 1"), Switched("Stance", 5.0, None))
+    assert net_of([to_2, back]) == ()
+
+
+def test_a_setting_of_zero_is_a_value_and_comes_back_from_a_file() -> None:
+    reported = AlignmentChange("A", (PartChange(KNEE, setting="Step", setting_before=0.0, setting_value=2.0),))
+    assert alignment_table(reported) == {
+        "since": "A",
+        "parts": [{"part": "knee_unit", "setting": "Step", "setting_before": 0.0, "setting_value": 2.0}],
+    }
+    assert alignment_of_text(alignment_text(reported)) == reported
+
+
+def test_what_returns_is_the_earlier_condition_again() -> None:
+    """Whatever is stated of how it was undone, and with what lay between excluded."""
+    again = AlignmentChange("C", (PartChange(PYLON, height_mm=-3.0),), returns_to="A")
+    chain = CHAIN | {"A again": again, "E": AlignmentChange("A again", (PartChange(PYLON, height_mm=1.0),))}
+    assert changed_between(chain, "A", "A again") == ()
+    back = NetChange(FRONT, angle_deg=-2.0, turns=-0.5), NetChange(PYLON, height_mm=-2.0)
+    assert changed_between(chain, "B", "E") == back
+    assert changed_between({"A": None, "A again": again}, "A again", "A") == ()
+    assert [root_of(chain, one) for one in ("E", "A again", "C", "A", "X")] == ["A", "A", "A", "A", "X"]
+    for reported in (again, AlignmentChange("C", (), returns_to="A")):
+        assert alignment_of_text(alignment_text(reported)) == reported
+
+
+def test_what_earlier_versions_wrote_reads_as_it_did() -> None:
+    text = '{"since":"A","parts":[{"part":"knee_unit","turns":0.5,"text":"program 2"}]}'
+    reported = alignment_of_text(text)
+    assert reported == AlignmentChange("A", (PartChange(KNEE, turns=0.5, text="program 2"),))
+    assert alignment_text(reported) == text
+    assert net_of(reported.parts)[0].switched == ()
 
 
 @given(CHANGES, st.text(max_size=20))
@@ -94,6 +168,12 @@ def test_what_no_chain_ties_is_not_known_and_a_ring_ends() -> None:
         {"height_mm": float("inf")},
         {"text": "x" * 201},
         {"text": "  "},
+        {"program": "x" * 41},
+        {"setting": "Swing flexion"},
+        {"setting_value": 50.0},
+        {"setting": "Swing flexion", "setting_value": 10000.0},
+        {"setting": "Swing flexion", "setting_value": float("nan")},
+        {"program": " "},
         {},
     ],
 )
@@ -119,6 +199,12 @@ def test_what_is_off_its_step_beyond_its_limit_or_states_nothing_is_no_change(wr
         {"since": "A", "parts": [{"part": "pylon", "text": 3}]},
         {"since": "A", "parts": [{"part": "pylon", "height_mm": 3}] * 21},
         {"since": "A", "parts": [{"part": "pylon", "height_mm": 10**400}]},
+        {"since": "A", "parts": [{"part": "knee_unit", "program": 2}]},
+        {"since": "A", "parts": [{"part": "knee_unit", "setting": "x", "setting_value": "50"}]},
+        {"since": "A", "parts": [{"part": "knee_unit", "setting": "x", "setting_value": True}]},
+        {"since": "A", "parts": [], "returns_to": ""},
+        {"since": "A", "parts": [], "returns_to": 1},
+        {"since": "A", "parts": [{"part": "pylon", "height_mm": 3}], "back": "A"},
     ],
 )
 def test_what_others_have_written_is_none_of_ours(other: object) -> None:

@@ -5,7 +5,7 @@ afterwards. The window is worked by xdotool alone, from outside. `--keyboard` us
 a library of its own, to the saved results. `--mouse` uses keys for nothing, in the demonstration. What is on the screen
 is given by the application's own process, and pictures of every stop are written into OUT, a folder for each look. It
 exits with 1, naming the stop, when a session cannot be led to its end, or not in five minutes of the application's
-stopwatch.
+stopwatch; four at the bench.
 
 To change a tour change `tour_stops.py`: each stop waits until the screen states what it should, has its pictures taken
 and acts. `--manual` puts the pictures that the manual and the README show where they are read; `--lang` leads the same
@@ -57,6 +57,7 @@ THEMES = ("light", "dark")
 TRACED = ("-f", "--seccomp-bpf", "-e", "trace=connect,sendto,sendmsg,sendmmsg,bind", "-e", "signal=none")
 INSIDE = (sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py")))
 MOST_S = 300.0  # of the application's stopwatch
+MOST_OF = {"bench": 240.0}  # four walks, and what was changed before each
 MOST_COUNTED = {"new": (40, 300.0), "returning": (10, 90.0)}  # actions, and seconds of the stopwatch
 LOOK_EVERY_S = 0.2
 MOST_TABS = 60  # more stops than any page has
@@ -132,7 +133,7 @@ def main(arguments: list[str]) -> None:
                 application.ask(f"speak {required.lang}")
                 application.ask("begin")  # the window is another
             try:
-                led = lead(application, TOURS[tour], required.out.resolve(), looks)
+                led = lead(application, TOURS[tour], required.out.resolve(), looks, MOST_OF.get(tour, MOST_S))
             except TourError as end:
                 sys.exit(str(end))
         if required.manual:
@@ -167,13 +168,17 @@ class Led:
     counted_s: float = 0.0
 
 
-def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str]) -> Led:
+def lead(
+    application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str], most_s: float = MOST_S
+) -> Led:
     """Go from stop to stop, and give what that took.
 
     Parameters
     ----------
     looks
         Of the pictures: theme, window and size of everything, as "dark 1280x800@100". The first is worked with.
+    most_s
+        Of the application's stopwatch.
     """
     led = Led()
     application.ask(f"look {looks[0]}")
@@ -193,8 +198,8 @@ def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequ
         for files, words in stop.leaves:
             if not any(words in file.read_text("utf-8") for file in application.home.glob(files)):
                 raise TourError(f"{stop.name}: no file {files} says “{words}”.")
-    if led.stopwatch_s > MOST_S:
-        stated = f"The session took {led.stopwatch_s:.0f} s of the application's stopwatch, {MOST_S:.0f} s at most."
+    if led.stopwatch_s > most_s:
+        stated = f"The session took {led.stopwatch_s:.0f} s of the application's stopwatch, {most_s:.0f} s at most."
         raise TourError(stated)
     return led
 

@@ -305,14 +305,14 @@ def pressed(key: str, times: int) -> tuple[str, ...]:
 
 
 def part_chosen(number: int) -> tuple[str, ...]:
-    """By its place in the list and not by its first letter, which every language has another of."""
-    return ("to Part", "press Home", *pressed("Down", number))
+    """By the key that the card shows, and by its place in the list: every language has another first letter."""
+    return ("press c", "press Home", *pressed("Down", number))
 
 
-FRONT_SCREW, KNEE_UNIT, PYLON = 0, 9, 10
+FRONT_SCREW, KNEE_UNIT, KNEE_PROGRAM, PYLON = 0, 10, 11, 12
 
 
-BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
+BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis and the first again, by keys that the screen shows
     *(
         replace(stop, does=(*stop.does, *PROSTHETIC)) if stop.name == "06-patient" else stop
         for stop in KEYBOARD[:BENCH_UP_TO]
@@ -324,8 +324,9 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         offers("Repeat A"),
         (
             *(*part_chosen(PYLON), "to Height", *pressed("plus", 3), *part_chosen(FRONT_SCREW)),
-            *("to Angle", *pressed("plus", 4), "to Screw turns", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
+            *("to Angle", *pressed("plus", 4), "to Screw turns", *pressed("Up", 4), "to Shift", *pressed("plus", 4)),
             *(*part_chosen(KNEE_UNIT), "to Screw turns", *pressed("plus", 12)),
+            *(*part_chosen(KNEE_PROGRAM), "press Tab", "type Walk 1", "press Tab", "type Walk 2", "press Return"),
         ),
     ),
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
@@ -338,10 +339,14 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         lingers_s=1.0,
     ),
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
-    Stop("36-c-against-b", offers("Include C"), ("press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
-    Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press shift+Return"), lingers_s=1.0),
-    Stop("38-back-to-a", states("Back to A"), ("press ctrl+z", "to Include C", "press Return"), lingers_s=1.0),
-    Stop("39-c-kept", offers("Results"), ("to Results", "press Return"), lingers_s=1.0),
+    Stop("36-c-against-b", compares("C"), ("press Return", "press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
+    Stop("37-c-against-a", states("C \N{MINUS SIGN} A"), ("press r",), lingers_s=1.0),
+    Stop("38-back-to-a", states("Undo first"), ("press space",), lingers_s=1.0),
+    Stop("38a-a-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
+    Stop("39-a2-against-a", compares("A2"), ("press Return", "press 2"), lingers_s=3.0, patience_s=60.0),
+    Stop(
+        "39a-b-with-variation", states("variation of A. Its two walks"), ("to Results", "press Return"), lingers_s=1.0
+    ),
     Stop("40-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
     Stop("41-report", at_step("ReportStep"), ("to Export data", "press space"), lingers_s=1.0, patience_s=60.0),
     Stop("42-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
@@ -352,7 +357,11 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         leaves=(
             ("results*/**/alignments.csv", " A,foot_front_screw,2,0.5,4,"),
             ("results*/**/alignments.csv", " A,knee_unit,,1.5,,"),
+            ("results*/**/alignments.csv", ",Walk 1,Walk 2,,,,"),
             ("results*/**/alignments.csv", " B,knee_unit,4,,,"),
+            ("results*/**/alignments.csv", ' C,knee_unit,,,,,,"Knee unit: program Walk 1'),
+            ("results*/**/alignments.csv", "Walk 2,Walk 1,,,,"),
+            ("results*/**/summary.json", "returns_to"),
             ("results*/**/summary.json", "foot_front_screw"),
             ("results*/**/differences.csv", "foot_heel_rise_deg"),
         ),

@@ -5,16 +5,14 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QRectF, Qt, Signal
-from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QResizeEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QMouseEvent, QPainter, QResizeEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.card import Card
 from app.widgets.chip import Chip
-from app.widgets.choice import Choice
-from app.widgets.field import Field
 from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText, height_for
@@ -22,14 +20,14 @@ from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.badge import BADGE, Badge
 from app.wizard.walking.bench import ChangeEntry
-from app.wizard.walking.stepper import Stepper
-from app.wording.alignment import change_in_words, direction_words, part_name, turns_words
-from app.wording.numbers import MINUS
-from app.wording.translation import figure_text, tr
-from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
+from app.wizard.walking.entry_fields import EntryFields
+from app.wizard.walking.key_cap import CAP, KeyCap
+from app.wording.translation import tr
 from core.body import Side
 
 PADDING, LINE, GAP = 8, 18, 12
+ENTRY_KEY = "C"
+MOST_KEYS = 9  # as many as there are digits
 LEAST_LIST, LEAST_LIST_COMPACT = 88, 56
 
 
@@ -56,36 +54,25 @@ class AlignmentCard(Card):
     """The alignments walked so far, and the entry for the next change."""
 
     chosen = Signal(int, bool)  # the number of an alignment from 0, and whether it is to stand beside the one shown
-    reported = Signal()  # something of the next change was entered: `entry` holds it
 
     def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()
-        self._entry = entry
         self._rows: list[_AlignmentRow] = []
         self._list = QWidget()
         self._rows_column = QVBoxLayout(self._list)
         self._scroll = scrolled(self._list)
         self.next_title = Text(size=14, weight=SEMIBOLD, wraps=True)
-        self.parts = Choice(tr("Part"))
-        self.steppers = {name: Stepper() for name in FIGURES}
-        self.words = Field(tr("In words"), has_label=False, placeholder=tr("Free text, optional"), most=MOST_TEXT)
-        self.written = Text(size=12, tone="ink2", wraps=True)
-        self._grid = QGridLayout()
+        self._next_cap = KeyCap(ENTRY_KEY, tr("Key {key} enters the next change.").format(key=ENTRY_KEY))
+        self.fields = EntryFields(entry)
         self.chip = Chip(Side.LEFT)  # until rows are shown
         self._head_row = QWidget()
-        for part in ProsthesisPart:
-            self.parts.addItem(part_name(part), part)
         self._build()
-        self._connect()
+        self._scroll.verticalScrollBar().rangeChanged.connect(self._show_the_shown)
         self.show_entry("")
 
     @property
     def rows(self) -> tuple[AlignmentRow, ...]:
         return tuple(row.reported for row in self._rows)
-
-    @property
-    def tab_order(self) -> list[QWidget]:
-        return [self.parts, *self.steppers.values(), self.words.line_edit]
 
     def show_rows(self, rows: Sequence[AlignmentRow], side: Side) -> None:
         self.chip.set_side(side)
@@ -108,77 +95,24 @@ class AlignmentCard(Card):
             self._scroll.verticalScrollBar().setValue(top)
 
     def set_compact(self, is_compact: bool) -> None:
-        """Show the entry of the change in two rows where the card has the width of the window, and little height."""
+        """Show the entry of the change low where the card has the width of the window, and little height."""
         self._head_row.setVisible(not is_compact)  # the tab shows it, and the sentence above names whose it is
         scaled(self._scroll.setMinimumHeight, LEAST_LIST_COMPACT if is_compact else LEAST_LIST)
-        steppers = [*self.steppers.values()]
-        bottom = Qt.AlignmentFlag.AlignBottom
-        for widget in (self.parts, *steppers, self.words, self.written):
-            self._grid.removeWidget(widget)
-        if is_compact:
-            self._grid.addWidget(self.parts, 0, 0, bottom)
-            for k, stepper in enumerate(steppers):
-                self._grid.addWidget(stepper, 0, k + 1)
-            self._grid.addWidget(self.words, 1, 0, 1, 2)
-            self._grid.addWidget(self.written, 1, 2, 1, 3)
-        else:
-            self._grid.addWidget(self.parts, 0, 0, 1, 2)
-            for k, stepper in enumerate(steppers):
-                self._grid.addWidget(stepper, 1 + k // 2, k % 2)
-            self._grid.addWidget(self.words, 3, 0, 1, 2)
-            self._grid.addWidget(self.written, 4, 0, 1, 2)
+        self.fields.set_compact(is_compact)
 
     def show_entry(self, title: str) -> None:
-        """Show the next change as `entry` holds it; `title` names the alignment it starts from."""
-        entry = self._entry
+        """Show the next change as it is entered; `title` names the alignment it starts from."""
         self.next_title.setText(title)
-        if self.parts.currentData() != entry.part:
-            self.parts.setCurrentIndex(list(ProsthesisPart).index(entry.part))
-        angle_words, shift_words = direction_words(entry.part)
-        shown = {
-            "angle_deg": (angle_words, "°"),
-            "turns": (tr("Screw turns"), ""),
-            "shift_mm": (shift_words, tr(" mm")),
-            "height_mm": (tr("Height, longer +"), tr(" mm")),
-        }
-        for name, stepper in self.steppers.items():
-            caption, unit = shown[name]
-            value = entry.figure(name)
-            sign = "+" if value > 0 else MINUS if value < 0 else ""
-            stated = turns_words(value) if name == "turns" and value else sign + figure_text(abs(value), "g") + unit
-            stepper.show_value(caption, stated)
-        self.words.set_text(entry.text)
-        line = change_in_words(entry.parts)
-        self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
+        self.fields.show_entry()
 
     def _build(self) -> None:
         title, word = Text(tr("Alignments"), size=16, weight=SEMIBOLD), Text(tr("prosthetic"), size=12, tone="ink2")
         lay_out(QHBoxLayout(self._head_row), title, 1, self.chip, word, margins=0)
         lay_out(self._rows_column, 1, margins=0, spacing=4)
-        scaled(self._grid.setSpacing, 8)
-        lay_out(self.column, self._head_row, (self._scroll, 1), self.next_title, self._grid)
+        cap = self._next_cap, 0, Qt.AlignmentFlag.AlignTop
+        following = lay_out(QHBoxLayout(), (self.next_title, 1), cap, margins=0, spacing=8)
+        lay_out(self.column, self._head_row, (self._scroll, 1), following, self.fields)
         self.set_compact(False)  # with a parent: what is shown without one is a window, and takes the keys
-
-    def _connect(self) -> None:
-        self.parts.activated.connect(self._on_part_chosen)
-        self.parts.currentIndexChanged.connect(self._on_part_chosen)
-        for stepper in self.steppers.values():
-            stepper.stepped.connect(self._on_stepped)
-        self.words.edited.connect(self._on_words_edited)
-        self._scroll.verticalScrollBar().rangeChanged.connect(self._show_the_shown)
-
-    def _on_part_chosen(self, index: int) -> None:
-        self._entry.part = list(ProsthesisPart)[index]
-        self.reported.emit()
-
-    def _on_stepped(self, by: int) -> None:
-        name = next(name for name, stepper in self.steppers.items() if stepper is self.sender())
-        self._entry.step(name, by)
-        self.reported.emit()
-
-    def _on_words_edited(self, text: str) -> None:
-        self._entry.say(text)
-        self.reported.emit()
 
 
 class _AlignmentRow(Painted):
@@ -206,7 +140,9 @@ class _AlignmentRow(Painted):
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[reported.role]
         stated = [f"{reported.letter} {reported.title}", reported.note, lines, role]
         self.setAccessibleName(", ".join(filter(None, stated)))
-        self.setAccessibleDescription(tr("Key {key}").format(key=str(self._number + 1)))
+        keys = tr("Key {key} shows it. Shift and {key} compare it with the one shown.").format(key=self._key)
+        self.setAccessibleDescription(tr("Key {key}").format(key=self._key) if self._key else "")
+        self.setToolTip(" ".join(filter(None, [f"{', '.join(filter(None, stated))}.", keys if self._key else ""])))
         is_shown = reported.role is RowRole.SHOWN
         set_ground(self, Ground("sunken", inset=0) if is_shown else None)
         fill, line, tone = ("inv", "", "inv_ink") if is_shown else ("surface", "ink", "ink")
@@ -218,10 +154,13 @@ class _AlignmentRow(Painted):
         left, width = px(PADDING + BADGE + GAP), self.width()
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.reported.role]
         aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
-        right = QRectF(width - aside, px(PADDING), aside - px(PADDING), px(LINE))
+        before_cap = width - px(PADDING + CAP + 4)
+        right = QRectF(before_cap - aside, px(PADDING), aside - px(PADDING), px(LINE))
         texts = [
             PaintedText(
-                self.reported.title, QRectF(left, px(PADDING), width - left - aside, px(LINE)), theme.font(14, SEMIBOLD)
+                self.reported.title,
+                QRectF(left, px(PADDING), before_cap - aside - left, px(LINE)),
+                theme.font(14, SEMIBOLD),
             ),
             PaintedText(
                 self.reported.note,
@@ -237,6 +176,16 @@ class _AlignmentRow(Painted):
             texts.append(PaintedText(words, box, theme.font(12), align=LEFT, wraps=True))
             top += height
         return texts
+
+    def draw(self, painter: QPainter) -> None:
+        if self._key:
+            theme, px = current_theme(), current_theme().px
+            cap = QRectF(self.width() - px(PADDING + CAP), px(PADDING - 1), px(CAP), px(CAP))
+            theme.paint_cap(painter, cap, self._key, QColor(theme.colours.ink2), QColor(theme.colours.control))
+
+    @property
+    def _key(self) -> str:
+        return str(self._number + 1) if self._number < MOST_KEYS else ""
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

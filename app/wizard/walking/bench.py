@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from app.summary.alignments import alignments_of
-from app.wording.recordings import LETTERS, condition_letters
+from app.summary.pooled_walks import pool_letters, pools_of
+from app.wording.alignment import as_entered
+from app.wording.recordings import LETTERS, label_again, shown_names
 from core.alignment import (
     FIGURES,
     AlignmentChange,
@@ -12,19 +15,68 @@ from core.alignment import (
     PartChange,
     ProsthesisPart,
     changed_between,
+    root_of,
 )
 from core.session import Recording, RecordingKind
 
 NOTHING_REPORTED = dict.fromkeys(FIGURES, 0.0)
+NAMES = ("program_before", "program", "setting")
+NUMBERS = ("setting_before", "setting_value")
+SWITCHED_PARTS = (ProsthesisPart.FOOT, ProsthesisPart.KNEE_UNIT)  # with programs and settings
+
+
+class EntryTopic(NamedTuple):
+    """What is entered at once: the position of a part, or its program and a setting."""
+
+    part: ProsthesisPart
+    is_program: bool = False
+
+
+def _topics_of(part: ProsthesisPart) -> list[EntryTopic]:
+    positions = [EntryTopic(part)] if part is not ProsthesisPart.FOOT else []  # its screws and its rotation are moved
+    return [*positions, EntryTopic(part, is_program=True)] if part in SWITCHED_PARTS else positions
+
+
+TOPICS = tuple(topic for part in ProsthesisPart for topic in _topics_of(part))
+
+
+class KnownStates:
+    """What programs and settings are set to, by what was stated of them before."""
+
+    def __init__(self, found: Mapping[tuple[ProsthesisPart, str], str | float] | None = None) -> None:
+        self._found = found or {}
+
+    def program(self, part: ProsthesisPart) -> str:
+        found = self._found.get((part, ""), "")
+        return found if isinstance(found, str) else ""
+
+    def setting(self, part: ProsthesisPart, name: str) -> float | None:
+        found = self._found.get((part, name.strip().casefold())) if name.strip() else None
+        return found if isinstance(found, float) else None
 
 
 class ChangeEntry:
-    """The next change while it is entered: each part has its figures and words, and `part` is the one in hand."""
+    """The next change while it is entered: each part has its figures and words, and `part` is the one in hand.
+
+    `known`: what programs and settings are now: what they were before the change, unless somebody enters it.
+    """
 
     def __init__(self) -> None:
         self.part = ProsthesisPart.FOOT_FRONT_SCREW
+        self.is_program = False
+        self.known = KnownStates()
         self._figures: dict[ProsthesisPart, dict[str, float]] = {}
         self._texts: dict[ProsthesisPart, str] = {}
+        self._names: dict[ProsthesisPart, dict[str, str]] = {}
+        self._numbers: dict[ProsthesisPart, dict[str, float]] = {}
+
+    @property
+    def topic(self) -> EntryTopic:
+        return EntryTopic(self.part, self.is_program)
+
+    @topic.setter
+    def topic(self, topic: EntryTopic) -> None:
+        self.part, self.is_program = topic
 
     def figure(self, name: str) -> float:
         """Of the part in hand: `angle_deg`, `turns`, `shift_mm` or `height_mm`."""
@@ -33,6 +85,22 @@ class ChangeEntry:
     @property
     def text(self) -> str:
         return self._texts.get(self.part, "")
+
+    def name(self, which: str) -> str:
+        """Of the part in hand: `program_before`, `program` or `setting`, as it was typed."""
+        return self._names.get(self.part, {}).get(which, "")
+
+    def number(self, which: str) -> float | None:
+        """Of the part in hand: `setting_before` or `setting_value`; None where nothing was entered."""
+        return self._numbers.get(self.part, {}).get(which)
+
+    @property
+    def known_program(self) -> str:
+        return self.known.program(self.part)
+
+    @property
+    def known_setting(self) -> float | None:
+        return self.known.setting(self.part, self.name("setting"))
 
     def step(self, name: str, steps: int) -> None:
         """Add so many steps to a figure of the part in hand, up to its limit."""
@@ -44,61 +112,133 @@ class ChangeEntry:
     def say(self, text: str) -> None:
         self._texts[self.part] = text
 
+    def say_name(self, which: str, text: str) -> None:
+        self._names.setdefault(self.part, {})[which] = text
+
+    def set_number(self, which: str, value: float | None) -> None:
+        own = self._numbers.setdefault(self.part, {})
+        own.pop(which, None)
+        if value is not None:
+            own[which] = value
+
     @property
     def parts(self) -> tuple[PartChange, ...]:
         """All that was entered so far."""
         reported = []
         for part in ProsthesisPart:
-            figures, text = self._figures.get(part, NOTHING_REPORTED), self._texts.get(part, "").strip()
-            if text or any(figures.values()):
-                reported.append(PartChange(part, **figures, text=text))
+            given: dict[str, Any] = {"text": self._texts.get(part, "").strip()}
+            given |= self._figures.get(part, NOTHING_REPORTED) | self._program_of(part) | self._setting_of(part)
+            if any(given.values()):
+                reported.append(PartChange(part, **given))
         return tuple(reported)
+
+    def _program_of(self, part: ProsthesisPart) -> dict[str, Any]:
+        """What was entered of a program; nothing as long as it is the one before."""
+        own = {name: text.strip() for name, text in self._names.get(part, {}).items()}
+        before, after = own.get("program_before") or self.known.program(part), own.get("program", "")
+        return {"program_before": before, "program": after} if after and after.casefold() != before.casefold() else {}
+
+    def _setting_of(self, part: ProsthesisPart) -> dict[str, Any]:
+        name, numbers = self._names.get(part, {}).get("setting", "").strip(), self._numbers.get(part, {})
+        before, after = numbers.get("setting_before", self.known.setting(part, name)), numbers.get("setting_value")
+        if not name or after is None or after == before:
+            return {}
+        return {"setting": name, "setting_before": before, "setting_value": after}
 
     def load(self, parts: Sequence[PartChange]) -> None:
         """Enter all of a change again; empty: nothing."""
         self._figures = {one.part: {name: getattr(one, name) for name in FIGURES} for one in parts}
         self._texts = {one.part: one.text for one in parts}
+        self._names = {one.part: {name: getattr(one, name) for name in NAMES} for one in parts}
+        self._numbers = {
+            one.part: {name: value for name in NUMBERS if (value := getattr(one, name)) is not None} for one in parts
+        }
 
 
 @dataclass(frozen=True, slots=True)
 class AlignmentChain:
-    """The conditions walked so far in order, what was changed before each, and `base`, which the prosthesis is in."""
+    """The conditions walked so far in order, what was changed before each, and `base`, which the prosthesis is in.
 
+    `latest` is the condition of the latest walk: `base` is another where the prosthesis was put back to it since.
+    """
+
+    recordings: tuple[Recording, ...]
     letters: Mapping[str, str]  # by condition
     changes: Mapping[str, AlignmentChange | None]
     base: str
+    latest: str
 
     @property
     def first(self) -> str:
-        return next(iter(self.changes), "")
+        """What the chain of `base` began with; empty where nothing was walked."""
+        return root_of(self.changes, self.base) if self.changes else ""
 
     @property
     def next_letter(self) -> str:
         """Of the next condition that is new; none where letters have run out."""
-        last = max(self.letters.values(), default="")
+        last = max((letter[:1] for letter in self.letters.values()), default="")
         return LETTERS[LETTERS.index(last) + 1 :][:1] if last else LETTERS[0]
+
+    @property
+    def is_back(self) -> bool:
+        """Whether the prosthesis was put back since the latest walk."""
+        return self.base != self.latest
+
+    @property
+    def again(self) -> tuple[str, AlignmentChange]:
+        """What the next walk is called after the return, and what was undone before it."""
+        back = changed_between(self.changes, self.latest, self.base) or ()
+        label = label_again(self.first, list(self.changes))
+        return label, AlignmentChange(self.latest, as_entered(back), returns_to=self.first)
+
+    @property
+    def again_letter(self) -> str:
+        """The letter and number that a walk after the return has, as "A2"."""
+        label, change = self.again
+        walk = Recording("", RecordingKind.WALKING, "", {}, condition=label, alignment=change)
+        return shown_names([*self.recordings, walk])[""].letter
 
     def set_so(self, condition: str, change: AlignmentChange | None) -> tuple[NetChange, ...]:
         """By what the prosthesis differs from the first alignment in a walk that was changed so before."""
-        return changed_between({**self.changes, condition: change}, self.first or condition, condition) or ()
+        changes = {**self.changes, condition: change}
+        return changed_between(changes, root_of(changes, condition), condition) or ()
 
     def way_back(self, to: str) -> tuple[NetChange, ...] | None:
         """What leads from `base` to another condition; None where no chain ties them."""
         return changed_between(self.changes, self.base, to)
 
+    @property
+    def known(self) -> KnownStates:
+        """What programs and settings are in `base`, by what was stated when they were changed."""
+        found: dict[tuple[ProsthesisPart, str], str | float] = {}
+        for change in filter(None, self.changes.values()):
+            since = changed_between(self.changes, change.since, self.base)
+            if since is None or change.returns_to:
+                continue
+            then = {(one.part, two.name.casefold()): two.after for one in since for two in one.switched}
+            for part in change.parts:
+                for one in part.switched:
+                    key = part.part, one.name.casefold()
+                    if (state := then.get(key, one.before)) is not None:
+                        found[key] = state
+        return KnownStates(found)
+
 
 def chain_of(recordings: Sequence[Recording], returned_to: str) -> AlignmentChain:
     """The chain of the walks that count; `returned_to`: what the prosthesis was put back to since, empty where not."""
-    of_walk = condition_letters(recordings)
     walks = [one for one in recordings if one.kind is RecordingKind.WALKING and one.is_kept]
-    letters = {one.condition or one.name: of_walk[one.name] for one in walks}
+    called, letters = pool_letters(recordings), dict[str, str]()
+    for pool in pools_of(recordings).values():
+        if not pool.apart or pool.condition not in letters:
+            letters[pool.condition] = called[pool]
     changes = alignments_of(recordings)
     latest = (walks[-1].condition or walks[-1].name) if walks else ""
-    return AlignmentChain(letters, changes, returned_to if returned_to in changes else latest)
+    base = returned_to if returned_to in changes else latest
+    return AlignmentChain(tuple(recordings), letters, changes, base, latest)
 
 
 def next_walk(chain: AlignmentChain, entry: ChangeEntry, new_condition: str) -> tuple[str, AlignmentChange | None]:
     """What the next walk is called and what was changed before it: with nothing entered, the same condition again."""
     if entry.parts:
         return new_condition, AlignmentChange(chain.base, entry.parts)
-    return chain.base, chain.changes.get(chain.base)
+    return chain.again if chain.is_back else (chain.base, chain.changes.get(chain.base))

@@ -14,10 +14,11 @@ from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_view import BenchState
-from app.wizard.walking.bench_words import SPEED, Answer, Outcome, bench_answer
-from app.wizard.walking.walk_labels import is_alignment, new_alignment
+from app.wizard.walking.bench_words import SPEED, Answer, Outcome, bench_answer, variation_sentence
+from app.wizard.walking.shown_before import ShownBefore
+from app.wizard.walking.walk_labels import new_alignment
 from app.wording.alignment import change_lines, to_do_in_words
-from app.wording.recordings import name_in_words
+from app.wording.recordings import is_alignment, name_in_words
 from app.wording.translation import tr
 from core.alignment import AlignmentChange
 from core.body import Side
@@ -42,6 +43,7 @@ class Bench(QObject):
         self._to_undo = ""  # in words, as long as the prosthesis counts as put back
         self._discarded = ""  # the name of the latest walk, if it was discarded and the next is as it was
         self._may_undo_return = False
+        self._shown_before = ShownBefore()
 
     @property
     def side(self) -> Side | None:
@@ -84,7 +86,9 @@ class Bench(QObject):
         """A walk does not count, but the prosthesis is still as it was then: what changed is entered for the next."""
         known, change, walks = self.chain.changes, walk.alignment, self._visit.recordings.walks
         is_latest = bool(walks) and walks[-1].details.name == walk.name
-        if is_latest and walk.condition in known:
+        if is_latest and change is not None and change.returns_to in known:
+            self._returned_to, self._discarded = change.returns_to, walk.name
+        elif is_latest and walk.condition in known:
             self._returned_to, self._discarded = walk.condition, walk.name
         elif is_latest and change is not None and not self.entry.parts and change.since in known:
             self._returned_to, self._discarded = change.since, walk.name
@@ -124,10 +128,9 @@ class Bench(QObject):
         """Something else can be taken back now."""
         self._may_undo_return = False
 
-    @property
-    def returned_to(self) -> str:
-        """The condition that the prosthesis was put back to since the latest walk; empty where it was not."""
-        return self._returned_to
+    def returns_as(self, label: str) -> bool:
+        """Whether the prosthesis was put back since the latest walk, and the next one is called so then."""
+        return bool(self._returned_to) and not self.entry.parts and self.next_walk()[0] == label
 
     @Slot(int, bool)
     def choose(self, number: int, is_beside: bool) -> None:
@@ -139,6 +142,7 @@ class Bench(QObject):
             self._beside = parts[number].letter
         else:
             self._shown, self._beside = parts[number].letter, ""
+        self._shown_before.chosen()
         self.changed.emit()
 
     def state(self) -> BenchState | None:
@@ -156,6 +160,7 @@ class Bench(QObject):
         found = None
         if shown is not None and beside is not None and beside is not shown:
             found = Comparison(Contrast.CONDITIONS, (beside, shown), is_simulated=is_simulated)
+        self.entry.known = self.chain.known
         drawn = found.parts if found is not None else [shown] if shown is not None else []
         return BenchState(
             self._answer(found, side, shown),
@@ -165,6 +170,7 @@ class Bench(QObject):
             drawn,
             found,
             is_simulated,
+            self._notes(found, side, parts),
         )
 
     def _with_set_angle(self, answer: Answer, found: Comparison, side: Side) -> Answer:
@@ -173,6 +179,12 @@ class Bench(QObject):
         words = set_angle_in_words(shown) if shown is not None else ""
         return replace(answer, then=" ".join(filter(None, (words, answer.then))))
 
+    def _notes(self, found: Comparison | None, side: Side, parts: tuple[Part, ...]) -> tuple[str, ...]:
+        """How walks of one alignment vary, and what is shown otherwise than before."""
+        if found is None or (self._is_behind and not self._shown):
+            return ()
+        return tuple(filter(None, [variation_sentence(found, side, parts), self._shown_before.note(found, side)]))
+
     @property
     def next_title(self) -> str:
         chain = self.chain
@@ -180,17 +192,23 @@ class Bench(QObject):
         if self.entry.parts:
             return tr("{letter}: changed from {base}").format(letter=chain.next_letter, base=base)
         if self._to_undo:
-            stated = tr("Next change, from {base}. Undo first: {changes}")
-            return stated.format(base=base, changes=self._to_undo)
+            stated = tr("{letter}: {base} again. Undo first: {changes}")
+            return stated.format(letter=chain.again_letter, base=base, changes=self._to_undo)
+        if chain.is_back:
+            return tr("{letter}: {base} again").format(letter=chain.again_letter, base=base)
         return tr("Next change, from {base}").format(base=base)
 
     @property
     def _is_behind(self) -> bool:
-        """Whether a walk that counts is not among those that are shown."""
+        """Whether a walk that counts is not among those that are shown, or only a part of it: it was going on then."""
         session = self._visit.evaluation.session
-        known = {recording.name for recording in session.recordings} if session is not None else set()
-        counting = {one.details.name for one in self._visit.recordings.walks if one.details.is_kept}
-        return self._visit.evaluation.is_busy or not counting <= known
+        known = {one.name: one.imu for one in session.recordings} if session is not None else {}
+        for one in self._visit.recordings.walks:
+            if one.details.is_kept:
+                is_known, whole = one.details.name in known, one.read_back
+                if not is_known or (whole is not None and known[one.details.name] is not whole.imu):
+                    return True
+        return self._visit.evaluation.is_busy
 
     def _parts(self) -> tuple[Part, ...]:
         evaluation = self._visit.evaluation
@@ -223,13 +241,15 @@ class Bench(QObject):
         for part in parts:
             since, base = "", every.base_of(part)
             if part.is_again(base):
-                since = tr("Repeat {letter}").format(letter=base.letter)
+                since = tr("{letter} again").format(letter=base.letter)
             elif part.alignment is not None:
                 of_since = base.letter if base.name == part.alignment.since else name_in_words(part.alignment.since)
                 since = tr("{base}, changed").format(base=of_since)
             speed = part.of_both(SPEED)
             strides = part.strides(side) if side is not None else 0
             note = tr("{strides} strides · {speed} m/s").format(strides=strides, speed=fixed(speed, 2))
+            if len(part.walks) > 1:
+                note = tr("{count} walks, {note}").format(count=len(part.walks), note=note)
             role = RowRole.SHOWN if part is shown else RowRole.BESIDE if part is beside else RowRole.NONE
             title = since or (tr("Starting point") if part is parts[0] else name_in_words(part.name))
             rows.append(AlignmentRow(part.letter, title, note, tuple(change_lines(part.alignment)), role))

@@ -9,26 +9,29 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.results.compared_words import not_reported_in_words
-from app.summary.beside import changes_on_curves
+from app.summary.beside import change_on_curve
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
+from app.summary.walk_figures import why_in_words
 from app.theme.current import current_theme, on_theme
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
 from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
-from app.widgets.text import SEMIBOLD, Text
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
+from app.wizard.walking.bench_rows import cautions_of, marked_rows, shape_of
 from app.wizard.walking.bench_words import Answer, Outcome
 from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.verdicts.model import worst
 
-LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 312
-BETWEEN = 16
+LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 320
+MORE_FOR_CHANGES = 60  # px: where there is room, which the curves have else
+BETWEEN = 12
 ANY_WIDTH = 16_777_215  # Qt's own
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
@@ -36,7 +39,10 @@ ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
 
 @dataclass(frozen=True, slots=True)
 class BenchState:
-    """What the bench shows. `parts`: what is drawn, the earlier first; `found` None where one is shown alone."""
+    """What the bench shows. `parts`: what is drawn, the earlier first; `found` None where one is shown alone.
+
+    `notes`: how walks of one alignment vary, and what is shown otherwise than before.
+    """
 
     answer: Answer
     rows: Sequence[AlignmentRow]
@@ -45,6 +51,7 @@ class BenchState:
     parts: Sequence[Part]
     found: Comparison | None
     is_simulated: bool
+    notes: tuple[str, ...] = ()
 
 
 class BenchView(QWidget):
@@ -58,6 +65,7 @@ class BenchView(QWidget):
         self._mark = IconMark(Icon.DIFFERENCE, size=24)
         self.first = Text(size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(tone="ink2", wraps=True)
+        self.notes = Text(weight=MEDIUM, wraps=True)
         self.tabs = Segmented(
             tr("View"),
             [(ALIGNMENTS, tr("Alignments"), ""), (CURVES, tr("Curves"), ""), (CHANGES, tr("Differences"), "")],
@@ -68,22 +76,30 @@ class BenchView(QWidget):
         self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
         self.tabs.chosen.connect(self._arrange)
+        self.alignments.fields.left.connect(self._on_field_left)
         on_theme(self._arrange)
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [*self.tabs.segments, *self.alignments.tab_order, self.differences.table]
+        return [*self.tabs.segments, *self.alignments.fields.tab_order, self.differences.table]
 
     @property
     def frames(self) -> list[ComparedFrame]:
         """Those of the prosthetic side: the knee's and the ankle's."""
         return [frame for frame in self._frames.values() if not frame.isHidden()]
 
+    def focus_entry(self) -> None:
+        """Give the focus to the entry of the next change, and bring it into sight."""
+        self.tabs.choose(ALIGNMENTS)
+        self.alignments.fields.parts.setFocus(Qt.FocusReason.ShortcutFocusReason)
+
     def show_state(self, state: BenchState) -> None:
         self.first.setText(state.answer.first)
         self.then.setText(state.answer.then)
         self._mark.setVisible(state.answer.outcome is Outcome.DIFFERS)
-        self.setAccessibleDescription(f"{state.answer.first} {state.answer.then}")
+        self.notes.setText(" ".join(state.notes))
+        self.notes.setVisible(bool(state.notes))
+        self.setAccessibleDescription(" ".join([state.answer.first, state.answer.then, *state.notes]))
         self.alignments.show_rows(state.rows, state.side)
         self.alignments.show_entry(state.next_title)
         self.differences.show_pair(state.found, state.side, state.answer.first)
@@ -101,8 +117,11 @@ class BenchView(QWidget):
         self._room = room
         self._arrange()
 
+    def _on_field_left(self) -> None:
+        self.setFocus(Qt.FocusReason.OtherFocusReason)
+
     def _show_curves(self, state: BenchState) -> None:
-        marks = changes_on_curves(state.found) if state.found is not None else []
+        marked = marked_rows(state.found, state.side) if state.found is not None else {}
         has_one_zero = state.found is None or state.found.has_one_zero_throughout
         for kind in (JointKind.KNEE, JointKind.ANKLE):
             for side in Side:
@@ -112,11 +131,16 @@ class BenchView(QWidget):
             measured = [part for part in state.parts if joint in part.joints]
             curves = [part.curve(joint, is_about_mean=not has_one_zero) for part in measured if part.is_drawn(joint)]
             notes = [not_reported_in_words(part, joint) for part in measured if not part.is_drawn(joint)]
+            cautions = cautions_of([part for part in measured if part.is_drawn(joint)], shape_of(joint))
             frame = self._frame(state.side, kind)
-            frame.chart.deviations = tuple(
-                one for one in marks if one.kind is kind and one.first.joint is joint and has_one_zero
+            row = marked.get(kind) if has_one_zero else None
+            frame.chart.deviations = (
+                (change_on_curve(row, row.part.letter, row.against.letter),) if row is not None else ()
             )
-            frame.show_verdict(worst(part.verdicts.joint(joint).shape.verdict for part in state.parts))
+            notes += [tr("Caution. {reasons}").format(reasons=" ".join(cautions))] if cautions else []
+            verdict = worst(part.verdicts.joint(joint).shape.verdict for part in state.parts)
+            why = [(part.letter, why_in_words(part.verdicts.joint(joint))) for part in measured]
+            frame.show_verdict(verdict, " ".join(f"{letter}: {words}" for letter, words in why if words))
             frame.show_curves(curves, " ".join(notes), state.is_simulated, is_about_mean=not has_one_zero)
 
     def _frame(self, side: Side, kind: JointKind) -> ComparedFrame:
@@ -131,7 +155,7 @@ class BenchView(QWidget):
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Alignment"))
         self._curves_column = lay_out(QBoxLayout(DOWN, self._curves), margins=0, spacing=12)
-        words = lay_out(QVBoxLayout(), self.first, self.then)
+        words = lay_out(QVBoxLayout(), self.first, self.then, self.notes)
         words.setSpacing(2)
         mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
         head = lay_out(QHBoxLayout(), mark, (words, 1), spacing=12)
@@ -143,7 +167,9 @@ class BenchView(QWidget):
         list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
         curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
         changes = max(px(DIFFERENCES), self.differences.needed)
-        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self._room
+        spare = self._room - list_width - curves - changes - 2 * px(BETWEEN)
+        is_tabbed = self._is_compact or spare < 0
+        changes += min(spare // 2, px(MORE_FOR_CHANGES)) if spare > 0 else 0
         self.tabs.setVisible(is_tabbed)
         self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
         cards: tuple[tuple[str, QWidget, int], ...] = (

@@ -1,15 +1,17 @@
 """What the bench shows of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.results.compared_words import evidence_of, is_judged
+from app.results.compared_words import evidence_of
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
 from app.summary.measure_sentences import Reported, change_sentence, similar_sentence
 from app.summary.numbers_in_words import fixed
-from app.summary.what_stands_out import FAMILIES
+from app.summary.walk_to_walk import variation_in_words, variation_of
+from app.wizard.walking.bench_rows import may_be_stated, reported_row
 from app.wording.translation import tr
 from core.body import Side
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
@@ -53,19 +55,27 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
         count = few[0].strides(prosthetic)
         then = then.format(letter=few[0].letter, count=count, required=MIN_STRIDES_FOR_SD)
         return Answer(Outcome.OPEN, first, then)
-    own = [row for row in found.rows if _is_reported_of(row) and row.side is prosthetic]
-    if not own:
+    most = reported_row(found, prosthetic)
+    if most is None:
         first = tr("Prosthetic side: nothing can be compared between {one} and {other}.")
         return Answer(Outcome.OPEN, first.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
-    worth = [row for row in own if row.difference.is_worth_a_sentence]
-    beyond = [row for row in own if row.exceeds]  # as the table marks them
-    most = max(_without_family(worth or beyond or own), key=lambda row: row.difference.ratio)
-    if beyond:
+    if most.exceeds:
         stated = change_sentence(*_of_side(most))
         return Answer(Outcome.DIFFERS, stated, f"{evidence_of(most)} {_beside(found, prosthetic)}")
     column, _, size, *reported = _of_side(most)
     similar = similar_sentence(column, tr("Prosthetic side"), size, *reported)
     return Answer(Outcome.NOTHING, similar, f"{evidence_of(most)} {_beside(found, prosthetic)}")
+
+
+def variation_sentence(found: Comparison, prosthetic: Side, parts: Sequence[Part]) -> str:
+    """How the change compares with the walks of its base among themselves, `parts` being all; empty: not known."""
+    shown, other = found.parts[1], found.against
+    if shown.is_again(other):
+        stated = tr("{one} is {other} again: this is walk-to-walk variation, or the return is not exact.")
+        return stated.format(one=shown.letter, other=other.letter)
+    row = reported_row(found, prosthetic)
+    variation = variation_of(row, parts) if row is not None else None
+    return variation_in_words(variation, row.difference.difference) if row is not None and variation is not None else ""
 
 
 def speeds_in_words(shown: Part, other: Part) -> str:
@@ -74,17 +84,6 @@ def speeds_in_words(shown: Part, other: Part) -> str:
     if not all(map(math.isfinite, values)):
         return tr("Walking speeds are not known.")
     return tr("Walking speeds: {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
-
-
-def _is_reported_of(row: Compared) -> bool:
-    """Whether a sentence may name it: judged, of one leg, and no height, which the standing zero is in."""
-    return is_judged(row) and not row.measure.is_of_walk and not row.measure.needs_height
-
-
-def _without_family(rows: list[Compared]) -> list[Compared]:
-    """A range and the excursion that makes most of it are one movement: the excursion is reported."""
-    reported = {(row.measure.column, row.difference.difference > 0) for row in rows}
-    return [row for row in rows if (FAMILIES.get(row.measure.column), row.difference.difference > 0) not in reported]
 
 
 def _of_side(row: Compared) -> tuple[str, str, float, Reported, Reported]:
@@ -100,7 +99,7 @@ def _of_side(row: Compared) -> tuple[str, str, float, Reported, Reported]:
 
 def _beside(found: Comparison, prosthetic: Side) -> str:
     """What the sound side does, whether the sensors stayed on, and the speeds."""
-    sound = [row for row in found.rows if _is_reported_of(row) and row.side is not prosthetic]
+    sound = [row for row in found.rows if may_be_stated(row) and row.side is not prosthetic]
     beyond = [row for row in sound if row.exceeds]
     stated = tr("The sound side could not be compared.")
     if beyond:

@@ -100,14 +100,15 @@ class WalkingPage(QWidget):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        """The controls in the order of reading, those of this moment only."""
-        controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
+        """The controls in the order of reading, those of this moment only; the bench asks for others by itself."""
+        bench = self.bench.tab_order if self.bench.isVisibleTo(self) else []
+        controls: list[QWidget] = [*self.patient_controls.controls, *bench, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
         controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit]
         controls += [field.line_edit for field in self.timed_result.entry.fields]
         controls += [self.next.course.field.line_edit, self.next.test]
-        return [one for one in controls if one.isVisibleTo(self)]
+        return [one for one in controls if one in bench or one.isVisibleTo(self)]
 
     def focus(self) -> None:
         """Put the focus where reading starts, and on no button: Space is to start and stop the walk."""

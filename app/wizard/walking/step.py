@@ -80,7 +80,7 @@ class WalkingStep(Step):
         if self._page is None:
             page = self._page = WalkingPage(self.bench.entry)
             page.bench.alignments.chosen.connect(self.bench.choose)
-            page.bench.alignments.reported.connect(self._on_change_reported)
+            page.bench.alignments.fields.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
             page.next.course.entered.connect(self._on_course_entered)
@@ -204,7 +204,7 @@ class WalkingStep(Step):
         """Say that the prosthesis is put back to where it began."""
         if stated := self.bench.return_to_first():
             self._kept = self._discarded = None
-            self._label = self.bench.returned_to
+            self._label = self.bench.next_walk()[0]
             self._show()
             self.offered.emit(stated)
 
@@ -232,7 +232,7 @@ class WalkingStep(Step):
                 self.run()
             case KeyAction.NEXT_TEST if not self._visit.recordings.is_recording:
                 self._timed.choose_next()
-            case KeyAction.COURSE if not self._visit.recordings.is_recording and self.page.next.isVisible():
+            case KeyAction.ENTER_FIELDS if not self._visit.recordings.is_recording and self.page.next.isVisible():
                 self.page.enter_course()
             case KeyAction.LEAVE if self._timed.is_running:
                 self.stop()
@@ -240,6 +240,8 @@ class WalkingStep(Step):
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
                 self.discard()
+            case KeyAction.ENTER_FIELDS if self.bench.is_shown and not self._visit.recordings.is_recording:
+                self.page.bench.focus_entry()
             case KeyAction.LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
                 self.bench.choose(intent.number - 1, is_beside=False)
             case KeyAction.SECOND_LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
@@ -290,7 +292,7 @@ class WalkingStep(Step):
         self._at_stop = None
         self.page.count_again()
         label, alignment = self._label, None
-        if self.bench.is_shown:
+        if self.bench.is_shown or self.bench.returns_as(label):
             label, alignment = self.bench.next_walk()
             acquisition.set_up(self.bench.chain.set_so(label, alignment))
         planned = self._timed.planned

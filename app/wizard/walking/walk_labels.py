@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from app.wording.recordings import ALIGNMENT, LETTERS, name_in_words
+from app.wording.recordings import ALIGNMENT, LETTERS, is_alignment, name_in_words
 from app.wording.translation import tr
 from core.session import Patient
 
@@ -28,7 +28,7 @@ def label_after(patient: Patient, used: Sequence[str]) -> str:
     """Give what the next walk is most likely called: the first alignment not walked with, or the label as before."""
     alignments, stored = _alignments(len(LETTERS)), used
     used = [name_in_words(label) for label in used]
-    if used and used[-1] not in alignments:
+    if stored and not is_alignment(stored[-1]):
         return stored[-1]
     if used or patient.prosthetic_side in ("left", "right", "both"):
         return next((label for label in alignments if label not in used), alignments[-1])
@@ -38,11 +38,6 @@ def label_after(patient: Patient, used: Sequence[str]) -> str:
 def stored_label(label: str, used: Sequence[str]) -> str:
     """Give a label as it is stored with this session's walks, which may have been begun in another language."""
     return next((one for one in used if name_in_words(one) == label), label)
-
-
-def is_alignment(label: str) -> bool:
-    """Whether a label is one of ours for an alignment."""
-    return name_in_words(label) in _alignments(len(LETTERS))
 
 
 def new_alignment(letter: str, used: Sequence[str]) -> str:

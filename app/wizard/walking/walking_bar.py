@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from app.wizard.walking.step import WalkingStep
 
 
+RETURN_KEY = "R"  # at the bench, where it repeats no leg
+
+
 class WalkingBar:
     """Knows the visit and what is joined to it, and no page."""
 
@@ -135,12 +138,16 @@ class WalkingBar:
     def _at_bench(self) -> BarState:
         """Between two walks: walk on, keep, return to where it began."""
         chain, is_new = self._bench.chain, bool(self._bench.entry.parts)
-        letter = chain.next_letter if is_new else chain.letters.get(chain.base, "")
-        words = (tr("Walk with {letter}") if is_new else tr("Repeat {letter}")).format(letter=letter)
+        letter = chain.letters.get(chain.base, "")
+        if is_new or chain.is_back:
+            letter = chain.next_letter if is_new else chain.again_letter
+        words = tr("Walk with {letter}") if is_new or chain.is_back else tr("Repeat {letter}")
+        words = words.format(letter=letter)
         others = [replace(self._start_action, text=self._test_words or words, is_requested=False)]
         if chain.way_back(chain.first):
             words = tr("Return to {letter}").format(letter=chain.letters.get(chain.first, ""))
-            others.insert(0, BarAction(words, self._walks.return_to_first, icon=Icon.REPEAT, is_requested=False))
+            back = BarAction(words, self._walks.return_to_first, RETURN_KEY, Icon.REPEAT, is_requested=False)
+            others.insert(0, back)
         primary = self._results_action
         if (asked := asked_walk(self._visit.recordings)) is not None:
             letter = self._visit.recordings.shown_names[asked.details.name].letter

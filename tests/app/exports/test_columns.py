@@ -10,12 +10,13 @@ import pytest
 
 from app.exports.columns import COLUMNS, KNOWN, column_of
 from app.exports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tables, write_results
+from app.summary.alignments import write_alignments
 from app.summary.differences import comparisons_of, rows_of, write_compared_cycles, write_differences
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
-from core.session import Session
+from core.session import Recording, RecordingKind, Session
 from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
@@ -146,10 +147,37 @@ def test_what_was_turned_is_reported_in_a_table_and_beside_its_walk(out: Path) -
     assert (row["angle_deg"], row["turns"], row["shift_mm"], row["height_mm"]) == ("", "0.5", "", "3")
     assert row["text"] == "'=1"  # which no spreadsheet works out
     assert row["in_words"] == "Pylon ½ turn out; pylon +3 mm; pylon: =1"
+    assert list(row)[:10] == [  # as readers of earlier versions know them
+        *("walk", "condition", "since", "part", "angle_deg", "turns", "shift_mm", "height_mm", "text", "in_words")
+    ]
+    assert list(row)[10:] == [
+        *("program_before", "program", "setting", "setting_before", "setting_value", "returns_to"),
+    ]
+    assert set(list(row.values())[10:]) == {""}
     walks = json.loads((out / "summary.json").read_text(encoding="utf-8"))["walks"]
     part = {"part": "pylon", "turns": 0.5, "height_mm": 3.0, "text": "=1"}
     assert walks["walk 2"]["alignment"] == {"since": "shoes", "parts": [part]}
     assert "alignment" not in walks["walk 1"]
+
+
+def test_programs_settings_and_returns_have_columns_of_their_own(tmp_path: Path) -> None:
+    knee = ProsthesisPart.KNEE_UNIT
+    parts = (
+        PartChange(knee, program_before="Walk 1", program="=Walk 2"),
+        PartChange(knee, setting="Swing flexion", setting_before=0.0, setting_value=-2.5),
+    )
+    walks = (
+        Recording("walk 2", RecordingKind.WALKING, "2", {}, "B", alignment=AlignmentChange("A", parts)),
+        Recording("walk 3", RecordingKind.WALKING, "3", {}, "A2", alignment=AlignmentChange("B", parts[:1], "A")),
+    )
+    write_alignments(walks, tmp_path / "alignments.csv")
+    with (tmp_path / "alignments.csv").open(newline="", encoding="utf-8") as file:
+        rows = [tuple(row.values())[10:] for row in csv.DictReader(file)]
+    assert rows == [
+        ("Walk 1", "'=Walk 2", "", "", "", ""),
+        ("", "", "Swing flexion", "0", "-2.5", ""),
+        ("Walk 1", "'=Walk 2", "", "", "", "A"),
+    ]
 
 
 def test_where_nothing_was_changed_there_is_no_table_of_it(visit: tuple[Session, Analysis], tmp_path: Path) -> None:

@@ -84,7 +84,15 @@ PLANTED = {
     Typed.CONDITIONS: "Ausrichtung-Qx4",
     Typed.CHANGES: "Keil-Qy1",
 }
-CHANGED = PartChange(ProsthesisPart.PYLON, height_mm=3.0, text=PLANTED[Typed.CHANGES])
+CHANGED = PartChange(
+    ProsthesisPart.PYLON,
+    height_mm=3.0,
+    text=PLANTED[Typed.CHANGES],
+    program_before=PLANTED[Typed.CHANGES],
+    program=PLANTED[Typed.CHANGES],
+    setting=PLANTED[Typed.CHANGES],
+    setting_value=7.0,
+)
 NEVER = ("Operateur-Qx5", "Notiz-Qx6", "Programm-Qx7", "Uhr-Qx8", "Geschlecht-Qx9", "birth", NAME)
 AGREED = Goal(
     *("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5), NEVER[0], False, f"as {NAME} wants"),
@@ -111,7 +119,7 @@ def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
             replace(
                 r,
                 condition=PLANTED[Typed.CONDITIONS],
-                alignment=AlignmentChange(PLANTED[Typed.CONDITIONS], (CHANGED,)),
+                alignment=AlignmentChange(PLANTED[Typed.CONDITIONS], (CHANGED,), PLANTED[Typed.CONDITIONS]),
             )
             for r in session.recordings
         ),
@@ -150,7 +158,8 @@ def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: t
 
 def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted: tuple[Session, Analysis]) -> None:
     reported = Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].alignment
-    assert reported == AlignmentChange("condition 1", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
+    figures = PartChange(ProsthesisPart.PYLON, height_mm=3.0)
+    assert reported == AlignmentChange("condition 1", (figures,), returns_to="condition 1")
     words = AlignmentChange("", (PartChange(ProsthesisPart.OTHER, text="a wedge"),))
     only_words = replace(planted[0], recordings=(replace(planted[0].recordings[0], alignment=words),))
     assert Pseudonyms(bytes(32)).session(uuid4(), only_words).recordings[0].alignment is None

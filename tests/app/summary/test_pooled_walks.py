@@ -6,10 +6,11 @@ import pytest
 
 from app.summary.conditions import conditions_of, parts_of
 from app.summary.pooled_walks import pool_letters, pools_of
-from app.summary.visits import by_condition
+from app.summary.request import AnalysedVisit, default_walks
+from app.summary.visits import by_condition, by_stated_condition
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.results import Analysis, Calibration, Method
-from core.session import Recording, RecordingKind
+from core.session import Recording, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.core.verdicts.built_walk import calibrations, judged_walk, walk
 
@@ -72,6 +73,61 @@ def test_put_back_by_hand_and_written_down_as_a_change_it_is_no_return() -> None
     """C is what A was, so who walks with A again was elsewhere only in between."""
     reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", DOWN)), ("C", None))
     assert letters(reported) == ["A", "B", "C", "C"]
+
+
+AGAIN = AlignmentChange("B", DOWN, returns_to="A")
+
+
+def test_a_return_that_is_stored_as_one_is_a_condition_of_its_own() -> None:
+    reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("A again", AGAIN), ("A again", AGAIN))
+    assert letters(reported) == ["A", "B", "A2", "A2"]
+    parts = parts_of(analysed(reported), reported)
+    assert [(part.letter, part.name, len(part.walks)) for part in parts] == [
+        *(("A", "A", 1), ("B", "B", 1), ("A2", "A again", 2))
+    ]
+    assert [part.is_again(parts[0]) for part in parts] == [False, False, True]
+    excluded = (reported[0], replace(reported[1], is_kept=False), *reported[2:])  # what lay between counts no more
+    assert letters(excluded) == ["A", "A2", "A2"]
+
+
+def test_between_visits_a_return_is_the_alignment_that_it_leads_to() -> None:
+    """As it was walked last, as those are that earlier versions stored under one name."""
+    for last in (("A again", AGAIN), ("A", None)):
+        reported = walked(("A", None), ("B", AlignmentChange("A", UP)), last)
+        found = by_condition(analysed(reported), reported)
+        assert {name: part.walks[0].name for name, part in found.items()} == {"A": "walk 3", "B": "walk 2"}
+    stated = by_stated_condition(analysed(reported), reported)
+    assert [part.walks[0].name for part in stated.values()] == ["walk 3", "walk 2"]
+    reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("A again", AGAIN))
+    assert list(by_stated_condition(analysed(reported), reported)) == ["A", "B", "A again"]
+
+
+@pytest.mark.parametrize(
+    ("reported", "expected"),
+    [
+        (
+            [("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", UP)), ("A again", AGAIN)],
+            ("walk 1", "walk 3", "walk 4"),
+        ),
+        (
+            [
+                ("Shoes", None),
+                ("A", None),
+                ("B", AlignmentChange("A", UP)),
+                ("C", AlignmentChange("B", UP)),
+                ("D", AlignmentChange("C", UP)),
+            ],
+            ("walk 2", "walk 4", "walk 5"),
+        ),
+        ([("A", None), ("Shoes", None), ("AFO", None), ("Barefoot", None)], ("walk 2", "walk 3", "walk 4")),  # no chain
+        ([("A", None), ("B", AlignmentChange("A", UP))], ("walk 1", "walk 2")),
+    ],
+)
+def test_a_report_of_a_chain_begins_with_its_starting_point(
+    reported: list[tuple[str, AlignmentChange | None]], expected: tuple[str, ...]
+) -> None:
+    recordings = walked(*reported)
+    assert default_walks(AnalysedVisit(Session(recordings), analysed(recordings))) == expected
 
 
 def test_sensors_strapped_on_again_begin_another_pool() -> None:

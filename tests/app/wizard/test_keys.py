@@ -63,6 +63,7 @@ MEANINGS = [
     (Key.Key_D, Held.NoModifier, Intent(KeyAction.DISCARD)),
     (Key.Key_X, Held.NoModifier, Intent(KeyAction.DISCARD)),
     (Key.Key_T, Held.NoModifier, Intent(KeyAction.NEXT_TEST)),
+    (Key.Key_C, Held.NoModifier, Intent(KeyAction.ENTER_FIELDS)),
     (Key.Key_L, Held.NoModifier, Intent(KeyAction.LEFT_LEG)),
     (Key.Key_R, Held.ShiftModifier, Intent(KeyAction.RIGHT_LEG)),
     (Key.Key_1, Held.NoModifier, Intent(KeyAction.LABEL, 1)),
@@ -123,7 +124,7 @@ def test_a_text_field_takes_what_can_be_written(window: Window) -> None:
     for key in written:
         if key not in (Key.Key_Return, Key.Key_Escape, Key.Key_F6, Key.Key_F8, Key.Key_F11):
             assert window.press(key) == [], key
-    assert window.field.text() == " kdxtl1i[]"
+    assert window.field.text() == " kdxtcl1i[]"
 
 
 def test_space_is_written_in_a_text_field_even_while_something_runs(window: Window) -> None:

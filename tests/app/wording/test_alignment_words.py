@@ -5,13 +5,22 @@ import pytest
 from app.editing.words import field_word, value_words
 from app.storage.edited_fields import recording_fields
 from app.wording.alignment import (
+    as_entered,
     change_in_words,
     change_lines,
     since_in_words,
     to_do_in_words,
     turns_words,
 )
-from core.alignment import AlignmentChange, PartChange, ProsthesisPart, changed_between
+from core.alignment import (
+    AlignmentChange,
+    NetChange,
+    PartChange,
+    ProsthesisPart,
+    changed_between,
+    net_of,
+    undoing,
+)
 from core.session import Recording, RecordingKind
 
 FRONT = ProsthesisPart.FOOT_FRONT_SCREW
@@ -61,6 +70,70 @@ def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
 def test_each_part_has_directions_of_its_own(change: PartChange, words: str) -> None:
     ((_, stated),) = change_lines(AlignmentChange("", (change,)))
     assert stated == words
+
+
+KNEE = ProsthesisPart.KNEE_UNIT
+TO_WALK_2 = PartChange(KNEE, program_before="Walk 1", program="Walk 2")
+TO_50 = PartChange(KNEE, setting="Swing flexion", setting_before=45.0, setting_value=50.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "words", "to_undo"),
+    [
+        (TO_WALK_2, "program Walk 2, was Walk 1", "set program Walk 1 again"),
+        (TO_50, "Swing flexion 50, was 45", "set Swing flexion to 45 again"),
+        (
+            PartChange(KNEE, program="Walk 2"),
+            "program Walk 2",
+            "set program back from Walk 2; what it was is not recorded",
+        ),
+        (
+            PartChange(KNEE, setting="Stance", setting_before=0.5, setting_value=-2.5),
+            "Stance −2.5, was 0.5",
+            "set Stance to 0.5 again",
+        ),
+        (
+            PartChange(KNEE, setting="Stance", setting_value=0.0),
+            "Stance 0",
+            "set Stance back from 0; what it was is not recorded",
+        ),
+    ],
+)
+def test_a_program_and_a_setting_are_stated_with_what_they_were_and_are_set_again(
+    change: PartChange, words: str, to_undo: str
+) -> None:
+    assert change_lines(AlignmentChange("A", (change,))) == [("Knee unit", words)]
+    assert change_in_words([change]) == f"Knee unit: {words}"
+    assert to_do_in_words(undoing(net_of([change]))) == f"Knee unit: {to_undo}"
+
+
+def test_settings_of_a_foot_are_the_foots_and_no_screws() -> None:
+    foot = PartChange(ProsthesisPart.FOOT, setting="Heel", setting_before=3.0, setting_value=4.0, shift_mm=2.0)
+    assert change_in_words([foot]) == "Foot 2 mm posterior; foot: Heel 4, was 3"
+
+
+@pytest.mark.parametrize(
+    "net",
+    [
+        net_of([TO_WALK_2, TO_50, PartChange(FRONT, turns=0.5, text="tight")]),
+        undoing(net_of([TO_WALK_2, TO_50, PartChange(KNEE, program="Stairs")])),
+        (NetChange(FRONT, angle_deg=-70.5, shift_mm=100.0, turns=13.0),),  # beyond what is entered at once
+        undoing(net_of([PartChange(KNEE, setting="Stance", setting_value=5.0)])),
+    ],
+)
+def test_what_leads_back_can_be_entered_and_comes_to_the_same(net: tuple[NetChange, ...]) -> None:
+    assert net_of(as_entered(net)) == net
+
+
+def test_what_is_undone_in_words_is_entered_in_words() -> None:
+    (entered,) = as_entered(undoing(net_of([PartChange(KNEE, text="new clamp")])))
+    assert entered == PartChange(KNEE, text="undo: new clamp")
+
+
+def test_a_return_is_stated_as_one() -> None:
+    again = AlignmentChange("Alignment B", (PartChange(ProsthesisPart.PYLON, height_mm=-3.0),), "Alignment A")
+    assert since_in_words(again) == "Back to Alignment A: Pylon −3 mm"
+    assert since_in_words(AlignmentChange("Alignment B", (), "Alignment A")) == "Back to Alignment A"
 
 
 def test_turns_are_eighths() -> None:

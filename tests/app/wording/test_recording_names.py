@@ -11,12 +11,15 @@ from app.wording.recordings import (
     LETTERS,
     ShownName,
     condition_letters,
+    is_alignment,
+    label_again,
     name_in_words,
     shown_names,
     where_shown,
     with_shown_names,
 )
 from app.wording.translation import use_language
+from core.alignment import AlignmentChange
 from core.findings import Finding, Severity
 from core.session import Recording, RecordingKind
 
@@ -125,3 +128,45 @@ def test_aids_are_read_in_german_and_others_as_typed() -> None:
     assert aids_in_words("shoes, stick, AFO, rollator") == "Schuhe, Stock, Unterschenkelorthese, rollator"
     use_language("en")
     assert aids_in_words("shoes, AFO, rollator") == "shoes, AFO, rollator"
+
+
+def returned(number: int, condition: str, to: str, since: str = "Alignment B") -> Recording:
+    return replace(walk(number, condition), alignment=AlignmentChange(since, (), returns_to=to))
+
+
+def test_what_returns_to_an_alignment_has_its_letter_and_the_next_number() -> None:
+    walks = walk(1, "Alignment A"), walk(2, "Alignment B"), returned(3, "Alignment A again", "Alignment A")
+    assert called(*walks) == ["A Alignment A", "B Alignment B", "A2 Alignment A again"]
+    assert list(condition_letters(walks).values()) == ["A", "B", "A"]
+    more = *walks, walk(4, "Alignment C"), returned(5, "Alignment A again 2", "Alignment A", "Alignment C")
+    assert called(*more)[3:] == ["C Alignment C", "A3 Alignment A again 2"]
+
+
+def test_what_only_sounds_like_a_return_has_a_letter_of_its_own() -> None:
+    assert called(walk(1, "Alignment A"), walk(2, "Alignment A again")) == ["A Alignment A", "B Alignment A again"]
+
+
+@pytest.mark.parametrize(
+    ("condition", "used", "label"),
+    [
+        ("Alignment A", [], "Alignment A again"),
+        ("Alignment A", ["alignment a again"], "Alignment A again 2"),
+        ("Aufbau B", [], "Alignment B again"),  # begun in German
+        ("old foot", [], "old foot again"),
+        ("old foot", ["old foot again"], "old foot again 2"),
+    ],
+)
+def test_a_return_is_called_by_what_it_returns_to(condition: str, used: list[str], label: str) -> None:
+    assert label_again(condition, used) == label
+
+
+def test_alignments_are_known_by_their_labels_in_each_language() -> None:
+    labels = ("Alignment A", "Aufbau C", "Alignment A again", "Aufbau A erneut 3", "Shoes", "alignment of mine")
+    assert [is_alignment(label) for label in labels] == [True, True, True, True, False, False]
+
+
+@pytest.mark.usefixtures("german")
+def test_a_return_is_read_in_german() -> None:
+    assert name_in_words("Alignment A again") == "Aufbau A erneut"
+    assert name_in_words("Alignment B again 2") == "Aufbau B erneut 2"
+    assert label_again("Alignment A", []) == "Aufbau A erneut"

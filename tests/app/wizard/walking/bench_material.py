@@ -32,7 +32,7 @@ def bench_visit() -> SimpleNamespace:
     )
     span = Calibration(tuple(one.name for one in walks), calibrations())
     analysis = Analysis(Method.ROBUST, is_simulated=True, calibrations=(span,), recordings=walks)
-    every = [SimpleNamespace(details=one) for one in WALKED]
+    every = [SimpleNamespace(details=one, read_back=None) for one in WALKED]
     return SimpleNamespace(
         prosthetic_sides=frozenset({Side.LEFT}),
         recordings=SimpleNamespace(every=every, walks=every),

@@ -15,7 +15,7 @@ from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.widgets.table_cells import TextCell
 from app.wizard.visit import Visit
-from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk
+from app.wizard.walking.bench import TOPICS, ChangeEntry, EntryTopic, chain_of, next_walk
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.bench_differences import BenchDifferences
 from app.wizard.walking.bench_words import Outcome, bench_answer
@@ -236,7 +236,7 @@ def test_each_alignment_is_against_the_one_it_was_changed_from_until_another_is_
 def test_to_return_it_states_what_to_undo_and_can_be_taken_back(bench: Bench) -> None:
     assert bench.return_to_first() == "Back to A: Pylon \N{MINUS SIGN}2 mm"
     assert bench.chain.base == "Alignment A"
-    assert bench.next_title == "Next change, from A. Undo first: Pylon −2 mm"  # as long as it is so
+    assert bench.next_title == "A2: A again. Undo first: Pylon −2 mm"  # as long as it is so
     assert bench.return_to_first() == ""  # it is there
     assert bench.undo_return()
     assert bench.chain.base == "Alignment C"
@@ -248,10 +248,13 @@ def test_to_return_it_states_what_to_undo_and_can_be_taken_back(bench: Bench) ->
     assert bench.chain.base == "Alignment A"
 
 
-def walked_again(visit: SimpleNamespace, **reported: Any) -> Recording:
-    """A walk more with the first alignment, which is one as before."""
-    again = recording(4, "A", **reported)
-    every = [*visit.recordings.every, SimpleNamespace(details=again)]
+AGAIN = AlignmentChange("Alignment C", (PartChange(PYLON, height_mm=-2.0),), returns_to="Alignment A")
+
+
+def walked_again(visit: SimpleNamespace, letter: str = "A again", **reported: Any) -> Recording:
+    """A walk more with the first alignment, 6° more of the knee; letter "A": as earlier versions stored it."""
+    again = recording(4, letter, AGAIN if letter == "A again" else None, **reported)
+    every = [*visit.recordings.every, SimpleNamespace(details=again, read_back=None)]
     visit.recordings.every = visit.recordings.walks = every
     evaluation = visit.evaluation
     one = judged_walk(walk(left=leg(Side.LEFT, knee_range_deg=66.0), name="walk 4", folder="walk 4"))
@@ -273,16 +276,55 @@ def test_a_walk_after_the_return_is_beside_the_first_and_changes_nothing_that_wa
     before = sentence_of(bench, 1)
     assert "10.0° more than with A" in before
     assert bench.return_to_first()
-    assert bench.next_walk() == ("Alignment A", None)
+    assert bench.next_walk() == ("Alignment A again", AGAIN)
     walked_again(visit)
     bench.begun()
     state = bench.state()
     assert state is not None
-    assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "Repeat A")
+    assert [(row.letter, row.title, row.lines) for row in state.rows][-1] == (
+        *("A2", "A again"),
+        (("Pylon, height", "−2 mm"),),
+    )
     assert shown(bench) == ("A2", "A")
     assert state.answer.first.endswith(" range of motion with A2, 6.0° more than with A (60.0°).")
+    assert state.notes[0] == "A2 is A again: this is walk-to-walk variation, or the return is not exact."
     assert sentence_of(bench, 1) == before
     assert bench.chain.next_letter == "D"
+    assert (bench.next_title, bench.next_walk()) == ("Next change, from A2", ("Alignment A again", AGAIN))
+    assert bench.return_to_first() == ""  # it is there
+    bench.entry.step("turns", 1)
+    condition, change = bench.next_walk()
+    assert (condition, change.since if change else "") == ("Alignment D", "Alignment A again")
+
+
+def test_what_earlier_versions_stored_of_a_return_reads_as_it_did(bench: Bench, visit: SimpleNamespace) -> None:
+    before = sentence_of(bench, 1)
+    walked_again(visit, "A")
+    bench.begun()
+    state = bench.state()
+    assert state is not None
+    assert [(row.letter, row.title, row.lines) for row in state.rows][-1] == ("A2", "A again", ())
+    assert shown(bench) == ("A2", "A")
+    assert sentence_of(bench, 1) == before
+
+
+def test_a_second_return_is_a_condition_of_its_own() -> None:
+    chain = chain_of((*WALKED, recording(4, "A again", AGAIN)), "")
+    further = AlignmentChange("Alignment A again", (PartChange(PYLON, turns=1.0),))
+    back = chain_of((*chain.recordings, recording(5, "D", further)), "Alignment A")
+    assert back.again == (
+        "Alignment A again 2",
+        AlignmentChange("Alignment D", (PartChange(PYLON, turns=-1.0),), returns_to="Alignment A"),
+    )
+    assert (back.again_letter, back.next_letter, back.first) == ("A3", "E", "Alignment A")
+    assert dict(back.letters)["Alignment A again"] == "A2"
+
+
+def test_the_chain_begins_with_its_own_first_and_not_with_another_condition_walked_before() -> None:
+    barefoot = replace(recording(9, "A"), condition="Barefoot")
+    chain = chain_of((barefoot, *WALKED), "")
+    assert chain.first == "Alignment A"
+    assert chain.way_back(chain.first) == (NetChange(PYLON, height_mm=-2.0),)
 
 
 @pytest.mark.parametrize(
@@ -317,7 +359,9 @@ def test_a_discarded_walk_after_the_return_leaves_the_prosthesis_as_it_is(bench:
     assert bench.return_to_first()
     bench.begun()
     bench.discarded(walked_again(visit, is_kept=False))
-    assert (bench.chain.base, bench.next_title) == ("Alignment A", "Next change, from A")
+    assert (bench.chain.base, bench.next_title) == ("Alignment A", "A2: A again")
+    assert bench.next_walk() == ("Alignment A again", AGAIN)
+    assert bench.entry.parts == ()
     bench.entry.step("turns", 1)
     bench.begun()
     assert bench.chain.base == "Alignment C"
@@ -326,7 +370,10 @@ def test_a_discarded_walk_after_the_return_leaves_the_prosthesis_as_it_is(bench:
 def test_a_discarded_walks_change_is_reported_again_of_the_next(bench: Bench, visit: SimpleNamespace) -> None:
     change = AlignmentChange("Alignment C", (PartChange(PYLON, turns=1.0),))
     walk = recording(4, "D", change, is_kept=False)
-    visit.recordings.walks = visit.recordings.every = [*visit.recordings.every, SimpleNamespace(details=walk)]
+    visit.recordings.walks = visit.recordings.every = [
+        *visit.recordings.every,
+        SimpleNamespace(details=walk, read_back=None),
+    ]
     bench.discarded(walk)
     assert bench.entry.parts == change.parts
     bench.begun()
@@ -343,7 +390,7 @@ def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, vis
     visit.prosthetic_sides = frozenset({Side.LEFT})
     visit.recordings.walks = []
     offered.append(bench.is_offered)
-    visit.recordings.walks = [SimpleNamespace(details=replace(WALKED[0], condition="Barefoot"))]
+    visit.recordings.walks = [SimpleNamespace(details=replace(WALKED[0], condition="Barefoot"), read_back=None)]
     offered.append(bench.is_offered)
     assert offered == [True, False, False, False]
 
@@ -363,6 +410,17 @@ def test_while_a_walk_is_analysed_nothing_is_stated_of_the_ones_before(bench: Be
     state = bench.state()
     assert state is not None
     assert "10.0° more than with A" in state.answer.first
+
+
+def test_of_a_walk_that_was_seen_in_part_only_nothing_is_stated(bench: Bench, visit: SimpleNamespace) -> None:
+    visit.recordings.walks[-1].read_back = SimpleNamespace(imu={})  # whole, after Stop
+    state = bench.state()
+    assert state is not None
+    assert (state.answer.first, state.notes) == ("The walk is being analysed.", ())
+    visit.recordings.walks[-1].read_back = SimpleNamespace(imu=visit.evaluation.session.recordings[-1].imu)
+    state = bench.state()
+    assert state is not None
+    assert "with C" in state.answer.first
 
 
 def test_a_walk_whose_analysis_ended_early_is_not_stated_to_be_analysed(bench: Bench, visit: SimpleNamespace) -> None:
@@ -435,22 +493,22 @@ def test_each_curve_states_what_may_be_read_of_it(page: WalkingPage, bench: Benc
 
 def test_the_next_change_is_reported_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
     card = page.bench.alignments
-    card.reported.connect(lambda: card.show_entry(bench.next_title))
-    assert card.written.text() == "Nothing changed yet."
+    card.fields.reported.connect(lambda: card.show_entry(bench.next_title))
+    assert card.fields.written.text() == "Nothing changed yet."
     for name, key, times in (
         ("turns", Qt.Key.Key_Plus, 4),
         ("angle_deg", Qt.Key.Key_Up, 5),
         ("angle_deg", Qt.Key.Key_Minus, 1),
     ):
         for _ in range(times):
-            QTest.keyClick(card.steppers[name], key)
-    assert card.written.text() == "Recorded as: Foot, anterior screw ½ turn out, +2° plantar"
+            QTest.keyClick(card.fields.steppers[name], key)
+    assert card.fields.written.text() == "Recorded as: Foot, anterior screw ½ turn out, +2° plantar"
     assert card.next_title.text() == "D: changed from C"
-    assert card.steppers["turns"].accessibleName() == "Screw turns: ½ out"
-    card.parts.setCurrentIndex(list(ProsthesisPart).index(PYLON))
-    QTest.keyClicks(card.words.line_edit, "clamp")
+    assert card.fields.steppers["turns"].accessibleName() == "Screw turns: ½ out"
+    card.fields.parts.setCurrentIndex(TOPICS.index(EntryTopic(PYLON)))
+    QTest.keyClicks(card.fields.words.line_edit, "clamp")
     assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")
-    assert card.steppers["turns"].value == "0"
+    assert card.fields.steppers["turns"].value == "0"
 
 
 @pytest.mark.parametrize(("tab", "visible"), [("alignments", 0), ("curves", 1), ("changes", 2)])
@@ -495,7 +553,8 @@ def test_in_a_small_window_the_next_change_is_reported_without_scrolling(page: W
     page.set_compact(True)
     page.resize(896, 420)
     QTest.qWait(50)
-    for widget in (*page.bench.alignments.tab_order, page.bench.alignments.written):
+    fields = page.bench.alignments.fields
+    for widget in (fields.parts, *fields.steppers.values(), fields.words.line_edit, fields.written):
         assert widget.isVisible()
         seen = widget.visibleRegion().boundingRect()
         assert seen.size() == widget.size(), widget.accessibleName()
@@ -529,7 +588,7 @@ def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
 
     before, after = (
         part("A", left=with_rise(leg(Side.LEFT), 60.0)),
-        part("B", left=with_rise(leg(Side.LEFT), rise_deg)),
+        part("B", left=with_rise(leg(Side.LEFT, knee_range_deg=62.0), rise_deg)),
     )
     shown_differences = BenchDifferences()
     qtbot.addWidget(shown_differences)

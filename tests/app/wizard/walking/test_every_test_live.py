@@ -23,7 +23,9 @@ from devices.simulation.walker import FreeMotion, Standing, Tissue, WalkerSettin
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
 
-RUN, NEXT_TEST, COURSE, LEAVE = map(Intent, (KeyAction.RUN, KeyAction.NEXT_TEST, KeyAction.COURSE, KeyAction.LEAVE))
+RUN, NEXT_TEST, COURSE, LEAVE = map(
+    Intent, (KeyAction.RUN, KeyAction.NEXT_TEST, KeyAction.ENTER_FIELDS, KeyAction.LEAVE)
+)
 
 
 @pytest.fixture

@@ -114,7 +114,7 @@ def test_space_starts_and_stops_and_keeps(
     assert bar.primary is not None
     assert (bar.primary.text, [one.text for one in bar.others]) == ("Include A", ["Repeat A"])
     for _ in range(2):
-        QTest.keyClick(step.page.bench.alignments.steppers["turns"], Qt.Key.Key_Plus)
+        QTest.keyClick(step.page.bench.alignments.fields.steppers["turns"], Qt.Key.Key_Plus)
     assert [one.text for one in step.bar().others] == ["Walk with B"]
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)  # keeps it, and starts the next
@@ -126,8 +126,14 @@ def test_space_starts_and_stops_and_keeps(
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
     assert not bar_states_change(step)
     assert next_label(step) == "Next: Alignment C"
+    back = next(one for one in step.bar().others if one.text == "Return to A")
+    assert back.key == "R"
     press(step, "Return to A")
-    assert next_label(step) == "Next: Alignment A"
+    assert next_label(step) == "Next: Alignment A again"
+    assert [one.text for one in step.bar().others] == ["Walk with A2"]
+    assert step.bench.next_walk()[1] == AlignmentChange(
+        "Alignment B", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=-0.25),), returns_to="Alignment A"
+    )
     step.undo()
     assert next_label(step) == "Next: Alignment C"
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
@@ -255,7 +261,7 @@ def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_reported_of_th
         raise LibraryError("A recording needs 620 MB of free disk", "Delete files")
 
     monkeypatch.setattr(Recorder, "begin", refuse)
-    step.page.bench.alignments.steppers["turns"].stepped.emit(1)
+    step.page.bench.alignments.fields.steppers["turns"].stepped.emit(1)
     step.on_intent(Intent(KeyAction.NEXT_TEST))
     with qtbot.waitSignal(visit.recordings.refused, timeout=PATIENCE_MS):
         step.on_intent(RUN)

@@ -1,6 +1,7 @@
 """Labels of walks: the usual ones with their digits, one's own kept, letters in the order of walking."""
 
-from app.wizard.walking.walk_labels import MOST, is_alignment, label_after, labels_for, stored_label
+from app.wizard.walking.walk_labels import MOST, label_after, labels_for, stored_label
+from app.wording.recordings import is_alignment
 from app.wording.translation import use_language
 from core.session import Patient
 
