@@ -8,6 +8,7 @@ from core.alignment import AlignmentChange
 from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.goals import Goal
+from core.prosthesis import NOT_STATED, Prostheses, stated_only
 from core.samples import ImuBlock, SensorInfo
 from core.timed.protocols import PlannedTest
 
@@ -22,7 +23,10 @@ class RecordingKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Patient:
-    """What the clinic typed. Sides are left, right, both, none or empty; `goals` are those that ended, too."""
+    """What the clinic typed. Sides are left, right, both, none or empty; `goals` are those that ended, too.
+
+    `prostheses` is what was stated of a side's prosthesis; of a side that is not prosthetic it means nothing.
+    """
 
     code: str = ""
     birth_year: int | None = None
@@ -35,6 +39,25 @@ class Patient:
     prosthetic_side: str = ""
     unknown: Mapping[str, object] = field(default_factory=dict)
     goals: tuple[Goal, ...] = ()
+    prostheses: Prostheses = field(default_factory=dict)
+
+    @property
+    def prosthetic_sides(self) -> frozenset[Side]:
+        """The sides that wear a prosthesis, of whatever level."""
+        return frozenset(side for side in Side if self.prosthetic_side in (side, "both"))
+
+    @property
+    def worn(self) -> Prostheses:
+        """What is stated of the prostheses of prosthetic sides; a side of which nothing is stated is missing."""
+        return {side: one for side, one in stated_only(self.prostheses).items() if side in self.prosthetic_sides}
+
+    def may_be_prosthetic(self, joint: Joint) -> bool:
+        """Whether a knee or ankle is the prosthesis's, for all that is stated: on a prosthetic side, and not own."""
+        return joint.side in self.prosthetic_sides and not self.is_own(joint)
+
+    def is_own(self, joint: Joint) -> bool:
+        """Whether a knee or ankle is stated to be left above or in a prosthesis: the level is below it."""
+        return self.worn.get(joint.side, NOT_STATED).replaces(joint) is False
 
 
 @dataclass(frozen=True, slots=True)

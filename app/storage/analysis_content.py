@@ -19,6 +19,7 @@ from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
 from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.results import (
     Analysis,
     AxisHalves,
@@ -37,14 +38,14 @@ from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart,
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/6"
+FORMAT = "gaitwright-kept-analysis/7"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {
     kind.__name__: kind
     for kind in (
         *(Analysis, AxisHalves, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
-        *(Reception, RecordingAnalysis, SideGait, Strides),
+        *(Prosthesis, Reception, RecordingAnalysis, SideGait, Strides),
         *(HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn),
         *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),
         *(Rise, Silence, StairStride, TimedPart, TimedTest, Turn),
@@ -53,7 +54,8 @@ VALUES: Mapping[str, type] = {
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
     for kind in (
-        *(AxisSource, ClockStatus, ClockTie, Joint, Method, NotMeasured, Reason, RecordingKind),
+        *(AmputationLevel, AxisSource, ClockStatus, ClockTie, FootKind, Joint, KneeKind, Method, NotMeasured),
+        *(Reason, RecordingKind),
         *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
     )
 }

@@ -89,9 +89,11 @@ def angle_sd_rad(
     is_hinge: bool,
     is_prosthetic: bool = False,
     ringing_rad_s: float | None = None,
+    is_own: bool = False,
 ) -> FloatArray:
     """Give the standard deviation (n,) of a joint's angle, rad; `distance_rad` (n,) from the middle posture.
-    `range_rad` counts on hinges only; `ringing_rad_s`: RMS off-axis rate above 3 Hz, None: unknown.
+    `range_rad` counts on hinges only; `ringing_rad_s`: RMS off-axis rate above 3 Hz, None: unknown. `is_own`: declared
+    to be the patient's, above a prosthesis: never a hinge, however it looks.
     """
     rate = off_axis_rate_rad_s
     if is_knee:
@@ -99,7 +101,7 @@ def angle_sd_rad(
     else:
         human = np.hypot(ANGLE_FLOOR_ANKLE_RAD + ANKLE_PER_RATE_S * rate, ANKLE_PER_DISTANCE * distance_rad)
     if is_hinge:
-        is_bare = rate <= BARE_OFF_AXIS_RAD_S and (ringing_rad_s or 0.0) <= BARE_RINGING_RAD_S
+        is_bare = not is_own and rate <= BARE_OFF_AXIS_RAD_S and (ringing_rad_s or 0.0) <= BARE_RINGING_RAD_S
         if not is_prosthetic and not is_bare:
             return np.maximum(MIN_DOUBTED_HINGE_RAD, human)
         hinge = max(MIN_HINGE_RAD, ANGLE_FLOOR_HINGE_RAD + HINGE_PER_SQUARE_RANGE * range_rad**2)

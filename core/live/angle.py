@@ -294,4 +294,4 @@ class _Certainty:
         bent = np.unwrap(np.array(self._twists)) if self._twists else np.zeros(1)
         usual = np.std(bent, keepdims=True)  # an average over postures
         kind = c.joint.is_knee, c.is_hinge, c.is_prosthetic
-        return float(angle_sd_rad(usual, off_axis, float(np.ptp(bent)), *kind)[0])
+        return float(angle_sd_rad(usual, off_axis, float(np.ptp(bent)), *kind, is_own=c.is_own)[0])

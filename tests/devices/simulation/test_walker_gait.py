@@ -147,7 +147,7 @@ def test_heel_and_toe_never_pass_through_the_floor(speed_m_s: float, kind: str) 
     walk = Walk(speed_m_s=speed_m_s, strides=3)
     rng = np.random.default_rng(5)
     leg = make_leg(settings, Side.LEFT)
-    plan = plan_walk(walk, time_s, Side.LEFT, settings.prosthetic_side, rng)
+    plan = plan_walk(walk, time_s, Side.LEFT, {side: make_leg(settings, side).foot for side in Side}, rng)
     motion = walk_leg(leg, plan, time_s, np.zeros((len(time_s), 2)), rng)
     foot, ankle = motion.rotations[2], motion.origins_m[2]
     lowest = ankle[:, 2] + np.minimum(foot @ HEEL_M, foot @ TOE_M)[:, 2]
@@ -193,7 +193,7 @@ def test_a_shuffling_foot_and_one_on_its_toes_stand_still_and_stay_above_the_flo
     settings = WalkerSettings()
     walk = Walk(speed_m_s=speed_m_s, strides=6, manner=manner)
     time_s = np.arange(0.0, 16.0, 0.001)
-    plan = plan_walk(walk, time_s, Side.LEFT, None, np.random.default_rng(1))
+    plan = plan_walk(walk, time_s, Side.LEFT, {}, np.random.default_rng(1))
     leg = make_leg(settings, Side.LEFT)
     motion = walk_leg(leg, plan, time_s, np.zeros((len(time_s), 2)), np.random.default_rng(2))
     foot, ankle_m = motion.rotations[2], motion.origins_m[2]
