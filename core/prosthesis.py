@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 from core.body import Joint, Side
 
@@ -114,7 +115,8 @@ def prosthesis_of_table(table: Mapping[str, object]) -> tuple[Prosthesis, dict[s
     stated = NOT_STATED
     for name, kind in _PARTS.items():  # the level first: knee and foot depend on it
         with suppress(KeyError, ValueError):
-            stated = replace(stated, **{name: kind(str(table[name]))})
+            part: dict[str, Any] = {name: kind(str(table[name]))}
+            stated = replace(stated, **part)
     return stated, {name: value for name, value in table.items() if name not in prosthesis_table(stated)}
 
 
