@@ -359,9 +359,8 @@ def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | N
         range_of(found.moving_twist) if len(found.moving_twist) else 0.0,
         calibration.joint.is_knee,
         calibration.is_hinge,
-        calibration.is_prosthetic,
+        calibration.nature,
         ringing_rad_s,
-        calibration.is_own,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)
     sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.added_sd_rad), np.nan)

@@ -58,6 +58,15 @@ class FootKind(StrEnum):
         return self not in (self.SACH, self.ENERGY_STORING)
 
 
+class JointNature(StrEnum):
+    """What a knee or ankle is, for all that was stated of its side."""
+
+    NOT_STATED = "not_stated"  # of a side without a prosthesis: a person's, or a test bench's
+    PROSTHETIC = "prosthetic"  # the prosthesis's, as far as is known: where no level is stated it may be the patient's
+    RIGID = "rigid"  # the prosthesis's foot against the pylon, which no joint is between
+    OWN = "own"  # the patient's, above the level
+
+
 @dataclass(frozen=True, slots=True)
 class Prosthesis:
     """What was stated of the prosthesis of one side.
@@ -87,11 +96,11 @@ class Prosthesis:
     def may_have_foot(self) -> bool:
         return self.level is None or self.level.replaces_ankle
 
-    def replaces(self, joint: Joint) -> bool | None:
-        """Whether a knee or ankle of its side is the prosthesis's; None where the level is not stated."""
-        if self.level is None:
-            return None
-        return self.level.replaces_knee if joint.is_knee else self.level.replaces_ankle
+    def nature_of(self, joint: Joint) -> JointNature:
+        """What a knee or ankle of its side is."""
+        if self.level is not None and not (self.level.replaces_knee if joint.is_knee else self.level.replaces_ankle):
+            return JointNature.OWN
+        return JointNature.RIGID if self.has_rigid_foot and not joint.is_knee else JointNature.PROSTHETIC
 
     @property
     def has_rigid_foot(self) -> bool:

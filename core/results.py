@@ -10,7 +10,7 @@ from core.gait.clocks import LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
 from core.hip.results import HipAngle, LegClock, PelvisAngles, PelvisTurn
-from core.prosthesis import Prostheses
+from core.prosthesis import JointNature, Prostheses
 from core.samples import FloatArray, IntArray
 from core.session import RecordingKind
 from core.signal.reception import Reception
@@ -55,8 +55,7 @@ class JointCalibration:
     `is_same_joint` is False where both sensors do not move as adjacent segments; its evidence is `disagreement`, what
     the best common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would
     coincide best at a lag that no clock has. `is_clock_shared`: both sensors are declared to share one clock, so there
-    is no lag to find. `is_prosthetic`: its side is declared to wear a prosthesis, which may replace the joint.
-    `is_own`: the level is declared to be below the joint, which is a person's therefore.
+    is no lag to find. `nature`: what the joint is declared to be.
     """
 
     joint: Joint
@@ -90,8 +89,7 @@ class JointCalibration:
     is_lag_at_border: bool = False
     is_clock_shared: bool = False
     disagreement: float | None = None
-    is_prosthetic: bool = False
-    is_own: bool = False
+    nature: JointNature = JointNature.NOT_STATED
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """What was measured at one visit: its recordings, who was measured, and what people stated about them."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -8,7 +8,7 @@ from core.alignment import AlignmentChange
 from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.goals import Goal
-from core.prosthesis import NOT_STATED, Prostheses, stated_only
+from core.prosthesis import NOT_STATED, JointNature, Prostheses, stated_only
 from core.samples import ImuBlock, SensorInfo
 from core.timed.protocols import PlannedTest
 
@@ -51,13 +51,16 @@ class Patient:
         """What is stated of the prostheses of prosthetic sides; a side of which nothing is stated is missing."""
         return {side: one for side, one in stated_only(self.prostheses).items() if side in self.prosthetic_sides}
 
-    def may_be_prosthetic(self, joint: Joint) -> bool:
-        """Whether a knee or ankle is the prosthesis's, for all that is stated: on a prosthetic side, and not own."""
-        return joint.side in self.prosthetic_sides and not self.is_own(joint)
+    def nature_of(self, joint: Joint) -> JointNature:
+        """What a knee or ankle is, for all that is stated."""
+        if joint.side not in self.prosthetic_sides:
+            return JointNature.NOT_STATED
+        return self.worn.get(joint.side, NOT_STATED).nature_of(joint)
 
-    def is_own(self, joint: Joint) -> bool:
-        """Whether a knee or ankle is stated to be left above or in a prosthesis: the level is below it."""
-        return self.worn.get(joint.side, NOT_STATED).replaces(joint) is False
+    def without_ankle(self, answered: Collection[Side]) -> frozenset[Side]:
+        """Sides whose foot has no ankle joint: by its kind, or where that is not stated as was `answered`."""
+        feet = {side: self.worn.get(side, NOT_STATED) for side in Side}
+        return frozenset(s for s, one in feet.items() if (s in answered if one.foot is None else one.has_rigid_foot))
 
 
 @dataclass(frozen=True, slots=True)

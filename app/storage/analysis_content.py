@@ -19,7 +19,7 @@ from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
 from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
-from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
+from core.prosthesis import AmputationLevel, FootKind, JointNature, KneeKind, Prosthesis
 from core.results import (
     Analysis,
     AxisHalves,
@@ -54,8 +54,8 @@ VALUES: Mapping[str, type] = {
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
     for kind in (
-        *(AmputationLevel, AxisSource, ClockStatus, ClockTie, FootKind, Joint, KneeKind, Method, NotMeasured),
-        *(Reason, RecordingKind),
+        *(AmputationLevel, AxisSource, ClockStatus, ClockTie, FootKind, Joint, JointNature, KneeKind),
+        *(Method, NotMeasured, Reason, RecordingKind),
         *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
     )
 }

@@ -81,8 +81,7 @@ def _calibration(
         is_same_joint=robust.is_same_joint if robust else True,
         is_lag_at_border=robust.lag.is_at_border if robust else False,
         disagreement=robust.disagreement if robust else None,
-        is_prosthetic=session.patient.may_be_prosthetic(joint),
-        is_own=session.patient.is_own(joint),
+        nature=session.patient.nature_of(joint),
     )
     return calibration, sign
 
