@@ -22,7 +22,8 @@ from app.summary.comparison import compare_legs, first_and_second
 from app.summary.conditions import conditions_of
 from app.summary.differences import likely_figures
 from app.wording.measures import goal_in_words
-from app.wording.translation import PURPOSE
+from app.wording.prostheses import prosthesis_words
+from app.wording.translation import PURPOSE, capitalised
 from app.wording.verdicts import gate_sentence
 from core.body import Side
 from core.goals import Goal
@@ -65,9 +66,9 @@ def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
 
 
 def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
-    """Give a collection Bundle: the patient as reported, the goals agreed, and an Observation per figure."""
+    """Give a collection Bundle: the patient as reported, prostheses, goals agreed, and an Observation per figure."""
     patient_url = _url(session, "patient")
-    resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
+    resources = [(patient_url, _patient(session)), *_age(session, patient_url), *_prostheses(session, patient_url)]
     resources += [(_url(session, "goal", *goal.key), _goal(goal, patient_url)) for goal in agreed_with(session).held]
     conditions = {recording.name: recording.condition for recording in session.recordings}
     started = {recording.name: recording.started or session.started for recording in session.recordings}
@@ -108,6 +109,14 @@ def _age(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, An
         value = {"value": value.pop("value"), "comparator": ">=", **value}
     observation = {"resourceType": "Observation", "status": "final", "code": {"coding": [YEARS_OLD], "text": "age"}}
     yield _url(session, "age"), {**observation, "subject": {"reference": patient_url}, "valueQuantity": value}
+
+
+def _prostheses(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each prosthesis as it was stated, a device of the patient."""
+    for side, one in session.patient.worn.items():
+        text = capitalised(prosthesis_words(side, one))
+        device = {"resourceType": "Device", "type": {"text": text}, "patient": {"reference": patient_url}}
+        yield _url(session, "prosthesis", str(side)), device
 
 
 def _goal(goal: Goal, patient_url: str) -> dict[str, Any]:

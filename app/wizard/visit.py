@@ -215,7 +215,7 @@ class Visit(QObject):
     def choices(self) -> tuple[SourceChoice, ...]:
         """The sources through which this patient's sensors can be received."""
         offered = [choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated]
-        return tuple(choice.for_sides(self.prosthetic_sides) for choice in offered)
+        return tuple(choice.for_patient(self.patient.details) for choice in offered)
 
     def place_sensors(self, only: Side | None = None) -> None:
         """Report to the library who wears what: what is recorded next takes it, all of it or that of one leg."""

@@ -36,13 +36,13 @@ FEET: Mapping[FootKind, str] = {
 }
 # as they are written within a sentence
 _PROSTHESES: Mapping[AmputationLevel | None, str] = {
-    None: later("prosthesis {side}"),
-    AmputationLevel.PARTIAL_FOOT: later("partial foot prosthesis {side}"),
-    AmputationLevel.ANKLE_DISARTICULATION: later("ankle disarticulation (Syme) prosthesis {side}"),
-    AmputationLevel.TRANSTIBIAL: later("transtibial prosthesis {side}"),
-    AmputationLevel.KNEE_DISARTICULATION: later("knee disarticulation prosthesis {side}"),
-    AmputationLevel.TRANSFEMORAL: later("transfemoral prosthesis {side}"),
-    AmputationLevel.HIP_DISARTICULATION: later("hip disarticulation prosthesis {side}"),
+    None: later("prosthesis"),
+    AmputationLevel.PARTIAL_FOOT: later("partial foot prosthesis"),
+    AmputationLevel.ANKLE_DISARTICULATION: later("ankle disarticulation (Syme) prosthesis"),
+    AmputationLevel.TRANSTIBIAL: later("transtibial prosthesis"),
+    AmputationLevel.KNEE_DISARTICULATION: later("knee disarticulation prosthesis"),
+    AmputationLevel.TRANSFEMORAL: later("transfemoral prosthesis"),
+    AmputationLevel.HIP_DISARTICULATION: later("hip disarticulation prosthesis"),
 }
 _KNEES: Mapping[KneeKind, str] = {
     KneeKind.LOCKED: later("manual-lock knee"),
@@ -63,15 +63,18 @@ _FEET: Mapping[FootKind, str] = {
 
 def prosthesis_words(side: Side, prosthesis: Prosthesis) -> str:
     """Say what is stated of one prosthesis: "transtibial prosthesis left, energy-storing foot"."""
-    words = [tr(_PROSTHESES[prosthesis.level]).format(side=side_name(side)), parts_words(prosthesis)]
-    return ", ".join(filter(None, words))
+    named = tr("{prosthesis} {side}").format(prosthesis=tr(_PROSTHESES[prosthesis.level]), side=side_name(side))
+    return ", ".join([named, *_parts(prosthesis)])
 
 
-def parts_words(prosthesis: Prosthesis) -> str:
-    """Say knee and foot, as far as they are stated: "polycentric knee, SACH foot"."""
-    knee = tr(_KNEES[prosthesis.knee]) if prosthesis.knee is not None else ""
-    foot = tr(_FEET[prosthesis.foot]) if prosthesis.foot is not None else ""
-    return ", ".join(filter(None, [knee, foot]))
+def whole_words(prosthesis: Prosthesis) -> str:
+    """The same without its side."""
+    return ", ".join([tr(_PROSTHESES[prosthesis.level]), *_parts(prosthesis)])
+
+
+def _parts(prosthesis: Prosthesis) -> list[str]:
+    knee = [tr(_KNEES[prosthesis.knee])] if prosthesis.knee is not None else []
+    return knee + ([tr(_FEET[prosthesis.foot])] if prosthesis.foot is not None else [])
 
 
 def worn_words(patient: "Patient", *, is_whole: bool = True) -> tuple[str, ...]:
