@@ -230,11 +230,8 @@ def _write_participant(session: Session, participant: str, folder: Path) -> None
 def _prostheses(patient: Patient) -> dict[str, str]:
     """What is stated of each prosthesis, a column a part; none where nothing is."""
     names = {"level": "amputation_level", "knee": "prosthetic_knee", "foot": "prosthetic_foot"}
-    return {
-        f"{side}_{names[part]}": word
-        for side, one in patient.worn.items()
-        for part, word in prosthesis_table(one).items()
-    }
+    stated = {side: prosthesis_table(one) for side, one in patient.worn.items()}
+    return {f"{side}_{names[part]}": word for side, table in stated.items() for part, word in table.items()}
 
 
 def _acquired(started: str) -> str:
