@@ -209,16 +209,16 @@ def _strides(facts: Facts) -> str:
 def _prostheses(facts: Facts) -> str:
     """What was stated of each, and what each joint of its side is taken for therefore."""
     takes = {
-        JointNature.OWN: tr("The {joint} is the patient's own; its uncertainty is that of a living joint."),
-        JointNature.PROSTHETIC: tr("The {joint} is a joint of the prosthesis."),
-        JointNature.RIGID: tr("The foot has no ankle joint: the {joint} angle is the foot relative to the shank."),
+        JointNature.OWN: tr("{joint}: the patient's own, so its uncertainty is that of a living joint."),
+        JointNature.PROSTHETIC: tr("{joint}: a joint of the prosthesis."),
+        JointNature.RIGID: tr("{joint}: a foot without ankle joint; the angle is the foot relative to the shank."),
     }
     sentences: list[str] = []
     for side, one in facts.visit.analysis.prostheses.items():
         sentences.append(f"{capitalised(prosthesis_words(side, one))}.")
         if one.level is not None:
             found = [joint for joint in (knee_of(side), ankle_of(side)) if joint in facts.walk.joints]
-            sentences += [takes[one.nature_of(joint)].format(joint=name_of(joint)) for joint in found]
+            sentences += [takes[one.nature_of(joint)].format(joint=capitalised(name_of(joint))) for joint in found]
     return " ".join(sentences)
 
 
