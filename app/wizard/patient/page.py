@@ -264,7 +264,7 @@ class PatientPage(QWidget):
         self._last.same.clicked.connect(self.same_set_up_pressed)
 
     def _follow(self) -> None:
-        """Ask only what follows from what is stated: no limb without a side, no ankle where the foot's kind tells."""
+        """Ask only what follows from what is stated: no limb without a side, no ankle where the foot's kind is stated."""
         draft = self.draft
         has_side = self.side.choice != "none"
         self.limb.setEnabled(has_side)
@@ -337,7 +337,7 @@ def _sides_on_page(patient: Patient) -> tuple[str, str]:
 
 
 def _asked_about_ankle(patient: Patient) -> tuple[Side, ...]:
-    """The sides with a prosthetic foot whose kind is not stated: that tells whether it has an ankle joint."""
+    """The sides with a prosthetic foot whose kind is not stated: its kind shows whether it has an ankle joint."""
     worn = {side: patient.worn.get(side, NOT_STATED) for side in Side if side in patient.prosthetic_sides}
     return tuple(side for side, one in worn.items() if one.foot is None and one.may_have_foot)
 
