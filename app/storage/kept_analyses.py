@@ -49,7 +49,7 @@ def bare(session: Session) -> Session:
         patient=Patient(
             affected_side=patient.affected_side,
             prosthetic_side=patient.prosthetic_side,
-            prostheses=patient.prostheses,
+            prostheses=patient.worn,
         ),
         sensors={
             site: SensorInfo(rate_hz=info.rate_hz, rate_kind=info.rate_kind, clock=info.clock)
@@ -105,7 +105,7 @@ def inputs_of(session: Session) -> AnalysisInputs:
     reported: dict[str, str | float | bool | None] = {
         "affected_side": patient.affected_side,
         "prosthetic_side": patient.prosthetic_side,
-        "prostheses": prostheses_text(patient.prostheses),
+        "prostheses": prostheses_text(patient.worn),
         "is_simulated": session.is_simulated,
     }
     for site, info in session.sensors.items():

@@ -31,7 +31,7 @@ def course_key(details: Session, stored: Sequence[StoredRecording]) -> str:
             {
                 "algorithm": algorithm(),
                 "sides": [details.patient.affected_side, details.patient.prosthetic_side],
-                "prostheses": prostheses_text(details.patient.prostheses),
+                "prostheses": prostheses_text(details.patient.worn),
                 "zero_rad": {str(joint): value for joint, value in details.zero_rad.items()},
                 "turned_sign": {str(joint): sign for joint, sign in details.turned_sign.items()},
                 "findings": sorted({f"{finding.key} {finding.where}" for finding in details.findings}),

@@ -264,7 +264,7 @@ class PatientPage(QWidget):
         self._last.same.clicked.connect(self.same_set_up_pressed)
 
     def _follow(self) -> None:
-        """Ask only what follows from what is stated: no limb without a side, no ankle where the foot's kind is stated."""
+        """Ask only what follows from what is stated: no limb without a side, no ankle beside the foot's kind."""
         draft = self.draft
         has_side = self.side.choice != "none"
         self.limb.setEnabled(has_side)
