@@ -23,7 +23,7 @@ from core.findings import Finding, Severity
 from core.gait.chosen_strides import leave_out
 from core.gait.inclination import inclination
 from core.gait.strides import Reason
-from core.gait.walking import clocks_in, gait_in, prosthetic_sides, site_of_events
+from core.gait.walking import clocks_in, gait_in, site_of_events
 from core.hip.analysis import find_hips, with_hips
 from core.placement.labels import doubted_labels
 from core.published.angles import DEFAULT_TAU_S
@@ -48,7 +48,7 @@ from core.timed.timing import time_test
 from core.verdicts.gates import verdicts_of
 from core.verdicts.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.verdicts.quality import look_at
-from core.verdicts.walk_findings import about_prosthesis, about_turns, about_walk
+from core.verdicts.walk_findings import about_prosthesis, about_rigid_feet, about_turns, about_walk
 
 Progress = Callable[[float, str], None]
 """Called with the share done (0 to 1) and what is being done. May raise to stop the analysis."""
@@ -109,7 +109,7 @@ def analyse(
         recordings += analysed
         findings += [*noticed, *of_span]
     findings += about_missing_joints(session, quality.unusable, recordings)
-    findings += about_prosthesis(recordings)
+    findings += [*about_prosthesis(recordings), *about_rigid_feet(session.patient.worn, recordings)]
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
     whole = Analysis(
         method=method,
@@ -119,6 +119,7 @@ def analyse(
         findings=tuple(unique.values()),
         affected_side=_affected_side(session.patient),
         stiff_sides=_stiff_sides(session.patient),
+        prostheses=session.patient.worn,
     )
     return leave_out(whole, session.recordings)
 
@@ -162,7 +163,7 @@ def _affected_side(patient: Patient) -> Side | None:
 
 def _stiff_sides(patient: Patient) -> frozenset[Side]:
     affected = frozenset(side for side in Side if patient.affected_side in (side, "both"))
-    return affected | prosthetic_sides(patient)
+    return affected | patient.prosthetic_sides
 
 
 class _Steps:
@@ -358,7 +359,7 @@ def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | N
         range_of(found.moving_twist) if len(found.moving_twist) else 0.0,
         calibration.joint.is_knee,
         calibration.is_hinge,
-        calibration.is_prosthetic,
+        calibration.nature,
         ringing_rad_s,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)

@@ -10,6 +10,7 @@ from core.gait.clocks import LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
 from core.hip.results import HipAngle, LegClock, PelvisAngles, PelvisTurn
+from core.prosthesis import JointNature, Prostheses
 from core.samples import FloatArray, IntArray
 from core.session import RecordingKind
 from core.signal.reception import Reception
@@ -54,7 +55,7 @@ class JointCalibration:
     `is_same_joint` is False where both sensors do not move as adjacent segments; its evidence is `disagreement`, what
     the best common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would
     coincide best at a lag that no clock has. `is_clock_shared`: both sensors are declared to share one clock, so there
-    is no lag to find. `is_prosthetic`: its side is declared to wear a prosthesis.
+    is no lag to find. `nature`: what the joint is declared to be.
     """
 
     joint: Joint
@@ -88,7 +89,7 @@ class JointCalibration:
     is_lag_at_border: bool = False
     is_clock_shared: bool = False
     disagreement: float | None = None
-    is_prosthetic: bool = False
+    nature: JointNature = JointNature.NOT_STATED
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,6 +210,7 @@ class Analysis:
     """Everything one session gives. `calibrations` one per span of validity, in order of time.
 
     `stiff_sides` are those that a patient's device or condition may stiffen: the affected and the prosthetic ones.
+    `prostheses`: what was stated of those that are worn, and is taken for true here.
     """
 
     method: Method
@@ -218,6 +220,7 @@ class Analysis:
     findings: tuple[Finding, ...] = ()
     affected_side: Side | None = None
     stiff_sides: frozenset[Side] = frozenset()
+    prostheses: Prostheses = field(default_factory=dict)
 
     def calibrated_for(self, recording: RecordingAnalysis) -> Mapping[Joint, JointCalibration]:
         """The calibrations that `recording` was measured with."""

@@ -1,6 +1,6 @@
 """What was measured at one visit: its recordings, who was measured, and what people stated about them."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -8,6 +8,7 @@ from core.alignment import AlignmentChange
 from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.goals import Goal
+from core.prosthesis import NOT_STATED, JointNature, Prostheses, stated_only
 from core.samples import ImuBlock, SensorInfo
 from core.timed.protocols import PlannedTest
 
@@ -22,7 +23,10 @@ class RecordingKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Patient:
-    """What the clinic typed. Sides are left, right, both, none or empty; `goals` are those that ended, too."""
+    """What the clinic typed. Sides are left, right, both, none or empty; `goals` are those that ended, too.
+
+    `prostheses` is what was stated of a side's prosthesis; of a side that is not prosthetic it means nothing.
+    """
 
     code: str = ""
     birth_year: int | None = None
@@ -35,6 +39,28 @@ class Patient:
     prosthetic_side: str = ""
     unknown: Mapping[str, object] = field(default_factory=dict)
     goals: tuple[Goal, ...] = ()
+    prostheses: Prostheses = field(default_factory=dict)
+
+    @property
+    def prosthetic_sides(self) -> frozenset[Side]:
+        """The sides that wear a prosthesis, of whatever level."""
+        return frozenset(side for side in Side if self.prosthetic_side in (side, "both"))
+
+    @property
+    def worn(self) -> Prostheses:
+        """What is stated of the prostheses of prosthetic sides; a side of which nothing is stated is missing."""
+        return {side: one for side, one in stated_only(self.prostheses).items() if side in self.prosthetic_sides}
+
+    def nature_of(self, joint: Joint) -> JointNature:
+        """What a knee or ankle is, for all that is stated."""
+        if joint.side not in self.prosthetic_sides:
+            return JointNature.NOT_STATED
+        return self.worn.get(joint.side, NOT_STATED).nature_of(joint)
+
+    def without_ankle(self, answered: Collection[Side]) -> frozenset[Side]:
+        """Sides whose foot has no ankle joint: by its kind, or where that is not stated as was `answered`."""
+        feet = {side: self.worn.get(side, NOT_STATED) for side in Side}
+        return frozenset(s for s, one in feet.items() if (s in answered if one.foot is None else one.has_rigid_foot))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,10 +13,11 @@ from app.wording.translation import tr
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart, net_of
 from core.body import Side, Site
 from core.goals import Goal, GoalOf, ordered
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.session import Patient
 from core.timed.protocols import TimedProtocol
-from devices.simulation.fitted_prosthesis import BUILT, setting_of
 from devices.simulation.fitted_prosthesis import SPEED_M_S as PROSTHESIS_SPEED_M_S
+from devices.simulation.fitted_prosthesis import setting_of
 from devices.simulation.walker_body import (
     PEOPLE,
     CourseKind,
@@ -67,7 +68,7 @@ class SimulatedPatient:
 
 def simulated_patients(now: datetime.datetime) -> tuple[SimulatedPatient, ...]:
     """All of them, the most recent visit first; words are in the language of the screen."""
-    return _knee_replaced(now), _after_stroke(now), _above_knee(now)
+    return _knee_replaced(now), _after_stroke(now), _above_knee(now), _below_knee(now)
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,15 +231,16 @@ _CHANGES = (
 def _above_knee(now: datetime.datetime) -> SimulatedPatient:
     """A left above-knee prosthesis, walked with three alignments in one visit."""
     code, side = f"{DEMO}-AK", Side.LEFT
+    fitted = Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.FLUID_CONTROLLED)
     patient = Patient(
         code=code,
         birth_year=now.year - 58,
         sex="male",
         height_m=1.80,
         mass_kg=86.0,
-        device=tr("transfemoral prosthesis, hydraulic knee"),
         affected_side=str(side),
         prosthetic_side=str(side),
+        prostheses={side: fitted},
     )
     names: list[str] = []
     walks: list[Walk] = []
@@ -247,7 +249,7 @@ def _above_knee(now: datetime.datetime) -> SimulatedPatient:
     for letter, parts in zip("ABC", _CHANGES, strict=True):
         name, condition = f"walk {len(walks) + 1}", tr("Alignment {letter}").format(letter=letter)
         changed += parts
-        setting = setting_of({change.part: change for change in net_of(changed)}) if changed else BUILT
+        setting = setting_of({change.part: change for change in net_of(changed)}, fitted)
         walks.append(Walk(name, speed_m_s=PROSTHESIS_SPEED_M_S, strides=STRIDES + 4, prosthesis=setting))
         reported[name] = ReportedOfWalk(condition, AlignmentChange(names[-1], parts) if parts else None)
         names.append(condition)
@@ -255,11 +257,38 @@ def _above_knee(now: datetime.datetime) -> SimulatedPatient:
         seed=61,
         tissue=Tissue.SOFT,
         prosthetic_side=side,
+        fitted=fitted,
         variation=PEOPLE,
         recordings=(Standing(), FreeMotion(), *walks),
     )
     limits = Limits(without_ankle=frozenset({side}))
     return SimulatedPatient(patient, (SimulatedVisit(code, _days_ago(now, 9), settings, reported, limits),))
+
+
+def _below_knee(now: datetime.datetime) -> SimulatedPatient:
+    """A right below-knee prosthesis, whose foot springs back and has no joint; the knee is the patient's own."""
+    code, side = f"{DEMO}-BK", Side.RIGHT
+    fitted = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
+    patient = Patient(
+        code=code,
+        birth_year=now.year - 44,
+        sex="female",
+        height_m=1.70,
+        mass_kg=68.0,
+        affected_side=str(side),
+        prosthetic_side=str(side),
+        prostheses={side: fitted},
+    )
+    settings = WalkerSettings(
+        seed=71,
+        tissue=Tissue.SOFT,
+        prosthetic_side=side,
+        fitted=fitted,
+        variation=PEOPLE,
+        recordings=(Standing(), FreeMotion(), Walk(strides=STRIDES)),
+    )
+    reported = {"walk 1": ReportedOfWalk(tr("Shoes"))}
+    return SimulatedPatient(patient, (SimulatedVisit(code, _days_ago(now, 12), settings, reported),))
 
 
 def _days_ago(now: datetime.datetime, days: int) -> datetime.datetime:

@@ -7,18 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.editing.confirmation import confirmed_by
-from app.storage.edited_fields import ALIGNMENT, CONFIRMED, GOALS, KEPT, PLACEMENT, TEST
+from app.storage.edited_fields import ALIGNMENT, CONFIRMED, GOALS, KEPT, PLACEMENT, PROSTHESIS, TEST
 from app.storage.three_way import OtherChange, Value
 from app.wording.alignment import since_in_words
 from app.wording.body import name_of, side_name
 from app.wording.measures import goal_in_words, measure_name, whose_name
 from app.wording.numbers import MINUS
 from app.wording.patients import when
+from app.wording.prostheses import whole_words
 from app.wording.timed_tests import planned_words
 from app.wording.translation import capitalised, figure_text, short_figure, tr, tr_n
 from core.alignment import alignment_of_text
 from core.body import Joint, Side, Site
 from core.goals import GoalOf, goals_of_text, held
+from core.prosthesis import prostheses_of_text
 from core.timed.protocols import planned_of_text
 
 
@@ -33,7 +35,11 @@ def field_word(field: str) -> str:
         of_joint = {"zero_rad": tr("Goniometer, {joint}"), "turned_sign": tr("Angle sign, {joint}")}
         return of_joint[name].format(joint=name_of(Joint(part)))
     if part in list(Side):
-        of_side = {"without_ankle": tr("Ankle joint, {side}"), "left_out_s": tr("Strides excluded, {side}")}
+        of_side = {
+            "without_ankle": tr("Ankle joint, {side}"),
+            "left_out_s": tr("Strides excluded, {side}"),
+            PROSTHESIS: tr("Prosthesis, {side}"),
+        }
         return of_side[name].format(side=side_name(Side(part)))
     return {
         "code": tr("Patient code"),
@@ -129,6 +135,9 @@ def _text(name: str, value: str) -> str:
         return confirmed_by(value) or tr("another user")
     if name == TEST:
         return planned_words(planned_of_text(value))
+    if name == PROSTHESIS:
+        ((_, prosthesis),) = prostheses_of_text(value).items()
+        return capitalised(whole_words(prosthesis))
     if name == PLACEMENT:
         worn = json.loads(value).items()
         return ", ".join(f"{name_of(Site(site))} {sensor}" for site, sensor in worn) or tr("not recorded")

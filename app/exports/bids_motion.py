@@ -20,8 +20,9 @@ from app.exports.figures import SIMULATED, software
 from app.storage.pseudonyms import AGE, age_in_words
 from app.wording.translation import PURPOSE, tr
 from core.body import Site
+from core.prosthesis import prosthesis_table
 from core.samples import FloatArray, ImuBlock, SensorInfo
-from core.session import Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 
 FOLDER = "bids"
 BIDS_VERSION = "1.10.0"
@@ -208,6 +209,7 @@ def _write_participant(session: Session, participant: str, folder: Path) -> None
         "weight": "" if patient.mass_kg is None else f"{patient.mass_kg:g}",
         "affected_side": patient.affected_side,
         "prosthetic_side": patient.prosthetic_side,
+        **_prostheses(patient),
     }
     lines = ["\t".join(row), "\t".join(_cell(value) or MISSING for value in row.values())]
     (folder / "participants.tsv").write_text("\n".join([*lines, ""]), encoding="utf-8")
@@ -220,8 +222,16 @@ def _write_participant(session: Session, participant: str, folder: Path) -> None
             "weight": {"Description": "Mass of the body.", "Units": "kg"},
             "affected_side": {"Description": "The side or sides that are affected."},
             "prosthetic_side": {"Description": "The side or sides with a prosthesis."},
+            **{name: {"Description": f"{name.replace('_', ' ').capitalize()}."} for name in _prostheses(patient)},
         },
     )
+
+
+def _prostheses(patient: Patient) -> dict[str, str]:
+    """What is stated of each prosthesis, a column a part; none where nothing is."""
+    names = {"level": "amputation_level", "knee": "prosthetic_knee", "foot": "prosthetic_foot"}
+    stated = {side: prosthesis_table(one) for side, one in patient.worn.items()}
+    return {f"{side}_{names[part]}": word for side, table in stated.items() for part, word in table.items()}
 
 
 def _acquired(started: str) -> str:

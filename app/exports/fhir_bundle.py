@@ -45,7 +45,8 @@ from app.summary.comparison import compare_legs, first_and_second
 from app.summary.conditions import conditions_of
 from app.summary.differences import likely_figures
 from app.wording.measures import goal_in_words
-from app.wording.translation import PURPOSE
+from app.wording.prostheses import prosthesis_words
+from app.wording.translation import PURPOSE, capitalised
 from app.wording.verdicts import gate_sentence
 from core.body import Side
 from core.goals import Goal
@@ -87,7 +88,8 @@ class _Bundle:
     def transaction(self) -> Resource:
         observations = [*self._age(), *self._figures(), *self._between_legs(), *self._tests()]
         goals = [(self._url("goal", *one.key), self._goal(one)) for one in agreed_with(self._session).held]
-        resources = [(self._patient_url, self._patient()), (self._device_url, self._software()), *goals, *observations]
+        resources = [(self._patient_url, self._patient()), (self._device_url, self._software())]
+        resources += [*self._prostheses(), *goals, *observations]
         resources.append((self._url("report"), self._report(observations)))
         return {
             "resourceType": "Bundle",
@@ -154,6 +156,13 @@ class _Bundle:
         code = {"code": {"coding": [YEARS_OLD], "text": "age"}}
         head: Resource = {"resourceType": "Observation", "status": "final", **code, **self._subject}
         yield self._url("age"), {**head, **_when(self._session.started), "valueQuantity": value}
+
+    def _prostheses(self) -> Iterator[tuple[str, Resource]]:
+        """Each prosthesis as it was stated, a device of the patient."""
+        for side, one in self._session.patient.worn.items():
+            text = capitalised(prosthesis_words(side, one))
+            device = {"resourceType": DEVICE, "type": {"text": text}, "patient": {"reference": self._patient_url}}
+            yield self._url("prosthesis", str(side)), device
 
     def _goal(self, goal: Goal) -> Resource:
         """What had been agreed by the session's day. Whether it is reached is left to who reads the figures."""

@@ -11,8 +11,10 @@ from uuid import UUID
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed
 from app.wording.alignment import since_in_words
 from app.wording.measures import goal_in_words
+from app.wording.prostheses import whole_words
 from app.wording.timed_tests import planned_words
 from app.wording.translation import later
+from core.body import Side
 from core.goals import Goal, held
 from core.hip.results import HipAngle
 from core.results import Analysis, Calibration, JointCalibration
@@ -53,6 +55,9 @@ def pseudonymised(
     return other, replace(analysis, calibrations=spans, recordings=recordings, findings=())
 
 
+PROSTHESES = {Side.LEFT: later("prosthesis, left"), Side.RIGHT: later("prosthesis, right")}
+
+
 def what_is_stated(session: Session) -> list[Row]:
     """Whose a session is, as every format that states any of it does; what is not known is empty."""
     patient = session.patient
@@ -67,6 +72,7 @@ def what_is_stated(session: Session) -> list[Row]:
         (later("aids"), patient.aids),
         (later("affected side"), patient.affected_side),
         (later("prosthetic side"), patient.prosthetic_side),
+        *((PROSTHESES[side], whole_words(one)) for side, one in patient.worn.items()),
         (later("goals"), "; ".join(map(_goal, held(patient.goals)))),
         (later("session"), session.started),
         (later("user"), session.operator),

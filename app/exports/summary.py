@@ -28,6 +28,7 @@ from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_i
 from core.goals import NO_GOALS, AgreedGoals
 from core.hip.results import HipIdentification
 from core.parameters import REGISTRY
+from core.prosthesis import prostheses_tables
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray
 from core.session import Recording, RecordingKind
@@ -65,7 +66,8 @@ def summarise(
 ) -> dict[str, Any]:
     """Give the content of `summary.json`; `joints` holds each joint's last calibration.
     Walks have `alignment` after a prosthesis change, `timed_test`, `goals` if agreed by the session's day.
-    With `recordings`, `conditions` has the report's figures over the strides of all walks of a condition.
+    With `recordings`, `conditions` has the report's figures over the strides of all walks of a condition. `prostheses`
+    is what was stated of them, where something was.
     """
     changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
@@ -86,6 +88,7 @@ def summarise(
         "reference_group": _reference_group(),
         "error_figures": error_figures_in_json(),
         "findings": [_finding(finding) for finding in analysis.findings],
+        **({"prostheses": prostheses_tables(analysis.prostheses)} if analysis.prostheses else {}),
     }
 
 

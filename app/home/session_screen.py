@@ -32,6 +32,7 @@ from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.wording.body import side_name
 from app.wording.findings import place
+from app.wording.prostheses import worn_words
 from app.wording.translation import PURPOSE, filled, later, tr
 from app.workers.background import Background, Work
 from app.workers.opening import opening_demonstration, opening_folder
@@ -326,7 +327,9 @@ def _in_words(patient: "Patient") -> str:
     """Give what the clinic typed, in one line."""
     person = ", ".join(filter(None, [str(patient.birth_year or ""), patient.sex]))
     side = ""
-    if patient.prosthetic_side and patient.prosthetic_side != "none":
+    if worn := worn_words(patient):
+        side = " · ".join(worn)
+    elif patient.prosthetic_side and patient.prosthetic_side != "none":
         side = tr("{side} prosthetic").format(side=_side_in_words(patient.prosthetic_side))
     elif patient.affected_side and patient.affected_side != "none":
         side = tr("{side} affected").format(side=_side_in_words(patient.affected_side))

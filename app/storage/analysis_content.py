@@ -19,6 +19,7 @@ from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
 from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
+from core.prosthesis import AmputationLevel, FootKind, JointNature, KneeKind, Prosthesis
 from core.results import (
     Analysis,
     AxisHalves,
@@ -57,7 +58,7 @@ VALUES: Mapping[str, type] = {
     kind.__name__: kind
     for kind in (
         *(Analysis, AxisHalves, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
-        *(Reception, RecordingAnalysis, SideGait, Strides),
+        *(Prosthesis, Reception, RecordingAnalysis, SideGait, Strides),
         *(HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn),
         *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),
         *(Rise, Silence, Sitting, StairStride, TimedPart, TimedTest, Turn, UpAndGoPart),
@@ -66,8 +67,8 @@ VALUES: Mapping[str, type] = {
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
     for kind in (
-        *(AxisSource, ClockStatus, ClockTie, DistanceSource, Joint, Method, NotMeasured, NotValid, Part),
-        *(Reason, RecordingKind),
+        *(AmputationLevel, AxisSource, ClockStatus, ClockTie, DistanceSource, FootKind, Joint, JointNature, KneeKind),
+        *(Method, NotMeasured, NotValid, Part, Reason, RecordingKind),
         *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
     )
 }

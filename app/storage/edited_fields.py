@@ -13,10 +13,12 @@ from app.storage.three_way import Value, Values
 from core.alignment import alignment_of_text, alignment_text
 from core.body import LEG_JOINTS, Side
 from core.goals import GOAL_COLUMNS, GoalKey, goals_of_text, goals_text, ordered, whose
+from core.prosthesis import NOT_STATED, Prosthesis, prostheses_of_text, prostheses_text
 from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import planned_of_text, planned_text
 
-PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name not in ("goals", "unknown"))
+IN_OTHER_FORM = ("goals", "prostheses", "unknown")
+PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name not in IN_OTHER_FORM)
 KEPT = "is_kept"
 CONFIRMED = "comment_confirmed"
 PLACEMENT = "placement"
@@ -25,6 +27,8 @@ ALIGNMENT = "alignment"
 """What was changed at the prosthesis is one field: a chain whose parts came from two people would be nobody's."""
 GOALS = "goals"
 """What was agreed of each figure is one field, with what it replaced: two people may agree on two figures' goals."""
+PROSTHESIS = "prosthesis"
+"""What is stated of one side's prosthesis is one field: a knee belongs to a level."""
 GOAL_KEYS = tuple((column, of) for column in GOAL_COLUMNS for of in whose(column))
 TEST = "test"
 """Which test a walk is is one field, with its keys: they belong to no other."""
@@ -37,9 +41,14 @@ def patient_fields(reported: Patient) -> dict[str, Value]:
     """Both sides are one field: which is affected and which is prosthetic are entered in one go."""
     values: dict[str, Value] = {name: getattr(reported, name) for name in PATIENT_CORRECTABLE if name not in SIDES}
     values |= {"sides": ",".join(getattr(reported, name) for name in SIDES)}
+    values |= {f"{PROSTHESIS}.{side}": _prosthesis_text(reported, side) for side in Side}
     return values | {
         goal_field(key): goals_text([one for one in reported.goals if one.key == key]) for key in GOAL_KEYS
     }
+
+
+def _prosthesis_text(reported: Patient, side: Side) -> str:
+    return prostheses_text({side: reported.prostheses.get(side, NOT_STATED)})
 
 
 def goal_field(key: GoalKey) -> str:
@@ -52,7 +61,11 @@ def with_patient_fields(reported: Patient, values: Values) -> Patient:
     every: dict[str, Any] = patient_fields(reported) | dict(values)
     affected, prosthetic = every.pop("sides").split(",")
     goals = ordered(goal for key in GOAL_KEYS for goal in goals_of_text(every.pop(goal_field(key))))
-    return replace(reported, affected_side=affected, prosthetic_side=prosthetic, goals=goals, **every)
+    worn: dict[Side, Prosthesis] = {}
+    for side in Side:
+        worn |= prostheses_of_text(every.pop(f"{PROSTHESIS}.{side}"))
+    sides = {"affected_side": affected, "prosthetic_side": prosthetic}
+    return replace(reported, goals=goals, prostheses=worn, **sides, **every)
 
 
 def session_fields(reported: Session, comment: str, limits: Limits, confirmed: str = "") -> dict[str, Value]:

@@ -18,6 +18,7 @@ from app.storage.analysis_content import FORMAT, DamagedContentError, packed, un
 from app.storage.results import Results
 from app.storage.stored import AnalysedRecording, AnalysisInputs, LibraryError, ResultKind
 from core.body import Site
+from core.prosthesis import prostheses_text
 from core.results import Analysis
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, Session
@@ -45,7 +46,11 @@ def bare(session: Session) -> Session:
             )
             for recording in session.recordings
         ),
-        patient=Patient(affected_side=patient.affected_side, prosthetic_side=patient.prosthetic_side),
+        patient=Patient(
+            affected_side=patient.affected_side,
+            prosthetic_side=patient.prosthetic_side,
+            prostheses=patient.worn,
+        ),
         sensors={
             site: SensorInfo(rate_hz=info.rate_hz, rate_kind=info.rate_kind, clock=info.clock)
             for site, info in reported.items()
@@ -100,6 +105,7 @@ def inputs_of(session: Session) -> AnalysisInputs:
     reported: dict[str, str | float | bool | None] = {
         "affected_side": patient.affected_side,
         "prosthetic_side": patient.prosthetic_side,
+        "prostheses": prostheses_text(patient.worn),
         "is_simulated": session.is_simulated,
     }
     for site, info in session.sensors.items():

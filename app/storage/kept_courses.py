@@ -13,6 +13,7 @@ from uuid import UUID
 
 from app.storage.kept_analyses import algorithm
 from app.storage.stored import LibraryError, Placement, StoredRecording
+from core.prosthesis import prostheses_text
 from core.session import Session
 
 if TYPE_CHECKING:  # the database takes long to load
@@ -30,6 +31,7 @@ def course_key(details: Session, stored: Sequence[StoredRecording]) -> str:
             {
                 "algorithm": algorithm(),
                 "sides": [details.patient.affected_side, details.patient.prosthetic_side],
+                "prostheses": prostheses_text(details.patient.worn),
                 "zero_rad": {str(joint): value for joint, value in details.zero_rad.items()},
                 "turned_sign": {str(joint): sign for joint, sign in details.turned_sign.items()},
                 "findings": sorted({f"{finding.key} {finding.where}" for finding in details.findings}),

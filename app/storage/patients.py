@@ -31,6 +31,7 @@ from app.storage.stored import (
 from app.storage.unit_of_work import UnitOfWork
 from app.wording.translation import filled, tr
 from core.goals import brought_together, goals_text
+from core.prosthesis import prostheses_text
 from core.session import Patient
 from devices.files.session_toml import PATIENT, ExpectedError
 
@@ -97,9 +98,13 @@ class Patients:
                 for name in PATIENT_CORRECTABLE
                 if getattr(row, name) in (None, "") and getattr(other, name) not in (None, "")
             }
-            goals = brought_together(*(reported_patient(one).goals for one in (row, other)))
+            own, others = (reported_patient(one) for one in (row, other))
+            joined = {
+                "goals": goals_text(brought_together(own.goals, others.goals)),
+                "prostheses": prostheses_text({**others.prostheses, **own.prostheses}),
+            }
             moved = session.scalars(select(SessionRow).where(SessionRow.patient_id == other.id))
-            changes = differences(row, filled | {"goals": goals_text(goals)})
+            changes = differences(row, filled | joined)
             changes += [change for visit in moved for change in differences(visit, {"patient_id": row.id})]
             doubles = [*session.scalars(select(PatientRow).where(PatientRow.merged_into_id == other.id)), other]
             changes += [change for one in doubles for change in differences(one, {"merged_into_id": row.id})]

@@ -149,7 +149,8 @@ def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) ->
 
 def with_limits(reported: Session, limits: Limits) -> Session:
     """With what no sensor shows of the patient's body, to be stated wherever the results are."""
-    rigid = [joint for joint in LEG_JOINTS if not joint.is_knee and joint.side in limits.without_ankle]
+    without = reported.patient.without_ankle(limits.without_ankle)
+    rigid = [joint for joint in LEG_JOINTS if not joint.is_knee and joint.side in without]
     stated = tuple(Finding("foot_against_shank", Severity.INFO, str(joint)) for joint in rigid)
     return replace(reported, findings=(*reported.findings, *stated))
 

@@ -40,8 +40,9 @@ from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording.translation import tr
 from app.workers.background import Background
 from app.workers.library_controller import LibraryController
-from core.body import Joint, Side, Site
-from core.session import Recording, RecordingKind, Session
+from core.body import LEG_JOINTS, Joint, Side, Site
+from core.prosthesis import JointNature, Prostheses
+from core.session import Patient, Recording, RecordingKind, Session
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -160,12 +161,17 @@ class Visit(QObject):
 
     @property
     def prosthetic_sides(self) -> frozenset[Side]:
-        stated = self.patient.details.prosthetic_side
-        return frozenset(side for side in Side if stated in (side, "both"))
+        return self.patient.details.prosthetic_sides
+
+    @property
+    def prosthetic_joints(self) -> frozenset[Joint]:
+        """Those that the prosthesis has, as far as is known; above a stated level they are the patient's."""
+        of_prosthesis = (JointNature.PROSTHETIC, JointNature.RIGID)
+        return frozenset(joint for joint in LEG_JOINTS if self.patient.details.nature_of(joint) in of_prosthesis)
 
     @property
     def without_ankle(self) -> frozenset[Side]:
-        return self.record.limits.without_ankle
+        return self.patient.details.without_ankle(self.record.limits.without_ankle)
 
     @property
     def has_skipped_standing(self) -> bool:
@@ -209,7 +215,7 @@ class Visit(QObject):
     def choices(self) -> tuple[SourceChoice, ...]:
         """The sources through which this patient's sensors can be received."""
         offered = [choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated]
-        return tuple(choice.for_sides(self.prosthetic_sides) for choice in offered)
+        return tuple(choice.for_patient(self.patient.details) for choice in offered)
 
     def place_sensors(self, only: Side | None = None) -> None:
         """Report to the library who wears what: what is recorded next takes it, all of it or that of one leg."""
@@ -298,9 +304,13 @@ class Visit(QObject):
             self.evaluation.ask(replace(reported, recordings=recordings))
 
     def evaluate_if_stale(self) -> None:
-        """Find it out again where other recordings count, or other samples of them, than when it was found out."""
+        """Find it out again where other recordings count, or other samples of them, or other legs were stated."""
         recordings, evaluated = self.recordings.counted(), self.evaluation.session
-        is_stale = evaluated is None or not _are_same(evaluated.recordings, recordings)
+        is_stale = (
+            evaluated is None
+            or not _are_same(evaluated.recordings, recordings)
+            or _legs(evaluated.patient) != _legs(self.patient.details)
+        )
         if recordings and is_stale and not self.evaluation.is_busy:
             self.evaluate()
 
@@ -477,6 +487,11 @@ class Visit(QObject):
 def _by_hand(reported: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
     """What was entered about the joints: zeros and signs."""
     return dict(reported.zero_rad), dict(reported.turned_sign)
+
+
+def _legs(patient: Patient) -> tuple[str, str, Prostheses]:
+    """What was entered about the legs, which the figures depend on."""
+    return patient.affected_side, patient.prosthetic_side, patient.worn
 
 
 def _day(moment: str) -> str:

@@ -2,7 +2,7 @@
 
 import logging
 import threading
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -19,7 +19,9 @@ from app.workers.background import Background, Work
 from app.workers.refusals import refusal_of
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
+from core.prosthesis import NOT_STATED, Prosthesis
 from core.samples import SensorInfo
+from core.session import Patient
 from devices.live import SourceRefusedError
 
 if TYPE_CHECKING:
@@ -47,8 +49,8 @@ class SourceChoice:
     `worn` gives the site by the sensor's name where the source gives it, as a stored session does. What `lines` mean
     has to be entered first; they are received through another choice then. `asks` names whom on the network `make`
     will ask what, where it asks anybody, and what to do to have it ask: that is shown before. `make_prosthetic` is
-    called instead for a patient with a prosthesis on one side. What `make_fleet` gives has to be set up first: `make`
-    is another one's then.
+    called instead for a patient with a prosthesis on one side, with what is stated of it. What `make_fleet` gives has
+    to be set up first: `make` is another one's then.
     """
 
     key: str
@@ -58,14 +60,15 @@ class SourceChoice:
     worn: Mapping[str, Site] = field(default_factory=dict)
     lines: "tuple[LinesAt, ...]" = ()
     asks: tuple[str, str] = ("", "")
-    make_prosthetic: "Callable[[Side], Acquisition] | None" = None
+    make_prosthetic: "Callable[[Side, Prosthesis], Acquisition] | None" = None
     make_fleet: "Callable[[], DotFleet] | None" = None
 
-    def for_sides(self, prosthetic: Collection[Side]) -> "SourceChoice":
-        """For a patient with prostheses on these sides."""
-        if self.make_prosthetic is None or len(prosthetic) != 1:
+    def for_patient(self, patient: Patient) -> "SourceChoice":
+        """For somebody who may wear prostheses."""
+        if self.make_prosthetic is None or len(patient.prosthetic_sides) != 1:
             return self
-        return replace(self, make=partial(self.make_prosthetic, *prosthetic))
+        (side,) = patient.prosthetic_sides
+        return replace(self, make=partial(self.make_prosthetic, side, patient.worn.get(side, NOT_STATED)))
 
 
 class WornSensors(QObject):

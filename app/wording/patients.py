@@ -4,6 +4,7 @@ import datetime
 from typing import TYPE_CHECKING
 
 from app.wording.dates import date, short_date
+from app.wording.prostheses import worn_words
 from app.wording.translation import later, tr, within_sentence
 
 if TYPE_CHECKING:
@@ -39,14 +40,19 @@ def time_of_session(started: str, now: datetime.datetime) -> datetime.datetime |
 def person(patient: "Patient") -> str:
     """Say what the clinic typed of a patient, but for code and device."""
     sexes = {"female": tr("female"), "male": tr("male")}
-    sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}
-    side = ""
-    if patient.prosthetic_side in sides:
-        side = tr("{side} prosthetic").format(side=sides[patient.prosthetic_side])
-    elif patient.affected_side in sides:
-        side = tr("{side} affected").format(side=sides[patient.affected_side])
     born = ", ".join(filter(None, [str(patient.birth_year or ""), sexes.get(patient.sex, patient.sex)]))
-    return " · ".join(filter(None, [born, side]))
+    return " · ".join(filter(None, [born, _side(patient)]))
+
+
+def _side(patient: "Patient") -> str:
+    sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}
+    if worn := worn_words(patient, is_whole=False):
+        return " · ".join(worn)
+    if patient.prosthetic_side in sides:
+        return tr("{side} prosthetic").format(side=sides[patient.prosthetic_side])
+    if patient.affected_side in sides:
+        return tr("{side} affected").format(side=sides[patient.affected_side])
+    return ""
 
 
 def aids_in_words(aids: str) -> str:

@@ -31,6 +31,7 @@ from core.calibration.validity import Basis
 from core.gait.cycles import POINTS, cycles_of
 from core.gait.strides import Strides
 from core.gait.walking import joint_parameters
+from core.prosthesis import JointNature
 from core.results import AxisHalves, SideGait
 from core.samples import FloatArray
 from core.session import Recording
@@ -79,8 +80,14 @@ def axis_halves_in(parts: AxesOfParts, walk: Recording, gait: Mapping[Side, Side
             continue
         spread = _spread(parts.span, walk, found, axes, gait[joint.side].strides) if joint.side in gait else {}
         sd_rad = float(np.sqrt(np.mean([part.sd_rad**2 for part in axes])))
-        halves[joint] = AxisHalves(_apart_rad(axes), sd_rad, found.basis.free_motion is not None, spread)
+        halves[joint] = AxisHalves(_apart_rad(axes), sd_rad, _is_free_motion_asked(parts.span, found), spread)
     return halves
+
+
+def _is_free_motion_asked(span: SpanAnalysis, joint: JointAnalysis) -> bool:
+    """Whether a free motion is compared with the walks: hands cannot bend a foot without a joint, only walking does."""
+    nature = span.tracks.session.patient.nature_of(joint.basis.joint)
+    return joint.basis.free_motion is not None and nature is not JointNature.RIGID
 
 
 def _axes_of_parts(span: SpanAnalysis, joint: JointAnalysis) -> Parts | None:
@@ -90,7 +97,7 @@ def _axes_of_parts(span: SpanAnalysis, joint: JointAnalysis) -> Parts | None:
     walked = _moving(span, joint, basis.walks)
     if walked is None:
         return None
-    if basis.free_motion is not None:
+    if basis.free_motion is not None and _is_free_motion_asked(span, joint):
         free = _moving(span, joint, (basis.free_motion,))
         return None if free is None else (_axes(tracks, found, None, free, False), _axes(tracks, found, knee, walked))
     half = len(walked) // 2

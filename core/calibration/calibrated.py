@@ -11,7 +11,6 @@ from core.calibration.clinical_sign import ClinicalSign, ankle_sign, ankle_sign_
 from core.calibration.identified import Identified
 from core.calibration.validity import Basis
 from core.calibration.zero import standing_twist, within_half_a_turn
-from core.gait.walking import prosthetic_sides
 from core.results import JointCalibration, Method, ZeroKind
 from core.samples import FloatArray
 from core.session import Session
@@ -82,7 +81,7 @@ def _calibration(
         is_same_joint=robust.is_same_joint if robust else True,
         is_lag_at_border=robust.lag.is_at_border if robust else False,
         disagreement=robust.disagreement if robust else None,
-        is_prosthetic=joint.side in prosthetic_sides(session.patient),
+        nature=session.patient.nature_of(joint),
     )
     return calibration, sign
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from core.prosthesis import JointNature
 from core.samples import FloatArray, IntArray
 from core.signal.datasets import Datasets
 from core.signal.rotations import turn_about_vertical
@@ -87,20 +88,22 @@ def angle_sd_rad(
     range_rad: float,
     is_knee: bool,
     is_hinge: bool,
-    is_prosthetic: bool = False,
+    nature: JointNature = JointNature.NOT_STATED,
     ringing_rad_s: float | None = None,
 ) -> FloatArray:
     """Give the standard deviation (n,) of a joint's angle, rad; `distance_rad` (n,) from the middle posture.
-    `range_rad` counts on hinges only; `ringing_rad_s`: RMS off-axis rate above 3 Hz, None: unknown.
+    `range_rad` counts on hinges only; `ringing_rad_s`: RMS off-axis rate above 3 Hz, None: unknown. What is declared to
+    be the patient's, or a foot without a joint, is no hinge, however it looks.
     """
+    is_prosthetic = nature in (JointNature.PROSTHETIC, JointNature.RIGID)
     rate = off_axis_rate_rad_s
     if is_knee:
         human = np.full(np.shape(distance_rad), ANGLE_FLOOR_KNEE_RAD + KNEE_PER_RATE_S * rate)
     else:
         human = np.hypot(ANGLE_FLOOR_ANKLE_RAD + ANKLE_PER_RATE_S * rate, ANKLE_PER_DISTANCE * distance_rad)
-    if is_hinge:
+    if is_hinge and nature is not JointNature.RIGID:
         is_bare = rate <= BARE_OFF_AXIS_RAD_S and (ringing_rad_s or 0.0) <= BARE_RINGING_RAD_S
-        if not is_prosthetic and not is_bare:
+        if not is_prosthetic and (not is_bare or nature is JointNature.OWN):
             return np.maximum(MIN_DOUBTED_HINGE_RAD, human)
         hinge = max(MIN_HINGE_RAD, ANGLE_FLOOR_HINGE_RAD + HINGE_PER_SQUARE_RANGE * range_rad**2)
         return np.full(np.shape(distance_rad), hinge)

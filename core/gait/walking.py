@@ -20,7 +20,7 @@ from core.gait.strides import strides_of_feet
 from core.parameters import EXCURSIONS, PEAK_WINDOWS
 from core.results import JointAngle, SideGait
 from core.samples import BoolArray, FloatArray
-from core.session import Patient, Recording
+from core.session import Recording
 from core.signal.sensors import SensorTracks
 from core.signal.tracks import Block
 
@@ -34,11 +34,6 @@ def site_of_events(tracks: SensorTracks, recording: Recording, side: Side) -> Si
         if tracks.is_usable(recording, site):
             return site
     return None
-
-
-def prosthetic_sides(patient: Patient) -> frozenset[Side]:
-    """The sides that wear a prosthetic foot, as the clinic typed them."""
-    return frozenset(side for side in Side if patient.prosthetic_side in (side, "both"))
 
 
 def clocks_in(
@@ -104,7 +99,7 @@ def gait_in(
             parameters,
             cycles,
             phases_at(time_s, found),
-            is_toe_off_biased=side in prosthetic_sides(tracks.session.patient),
+            is_toe_off_biased=side in tracks.session.patient.prosthetic_sides,
         )
     return gait
 
@@ -119,7 +114,7 @@ def _events(
 ) -> list[FootEvents]:
     """Events of one side, stretch by stretch, a long recording's seams closed; its pitch (n,) is written in place."""
     found: list[FootEvents] = []
-    is_rigid = site.side in prosthetic_sides(tracks.session.patient)
+    is_rigid = site.side in tracks.session.patient.prosthetic_sides
     for block in tracks.blocks(recording):
         for k, worn in enumerate(tracks.oriented(recording, site, block)):
             if worn.track.end_s < block.core_from_s or worn.track.start_s >= block.core_to_s:

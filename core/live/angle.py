@@ -293,5 +293,5 @@ class _Certainty:
         off_axis = robust_sd(np.array(self._across).view(np.float64)) if self._across else 0.0
         bent = np.unwrap(np.array(self._twists)) if self._twists else np.zeros(1)
         usual = np.std(bent, keepdims=True)  # an average over postures
-        kind = c.joint.is_knee, c.is_hinge, c.is_prosthetic
+        kind = c.joint.is_knee, c.is_hinge, c.nature
         return float(angle_sd_rad(usual, off_axis, float(np.ptp(bent)), *kind)[0])

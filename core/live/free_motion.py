@@ -43,8 +43,8 @@ class LiveFreeMotion:
 
     Parameters
     ----------
-    prosthetic_sides
-        Whose joints can be had more exactly, and are asked for.
+    prosthetic_joints
+        Those that can be had more exactly, and are asked for.
     without_ankle
         Sides whose prosthetic foot has no ankle joint: nothing can show it, and nothing asks for it.
     """
@@ -52,7 +52,7 @@ class LiveFreeMotion:
     def __init__(
         self,
         sensors: Mapping[Site, LiveSensor],
-        prosthetic_sides: frozenset[Side] = frozenset(),
+        prosthetic_joints: frozenset[Joint] = frozenset(),
         without_ankle: frozenset[Side] = frozenset(),
     ) -> None:
         self._sensors = LiveSensors(sensors)
@@ -60,7 +60,7 @@ class LiveFreeMotion:
         asked = [joint for joint in worn if joint.is_knee or joint.side not in without_ankle]
         self._joints = {
             joint: _JointMotion(
-                Excitation(joint, PROSTHESIS if joint.side in prosthetic_sides else HUMAN),
+                Excitation(joint, PROSTHESIS if joint in prosthetic_joints else HUMAN),
                 LiveLag(sensors[joint.proximal].step_s, sensors[joint.distal].step_s),
                 LEG_JOINTS.index(joint) * LOOK_S / len(LEG_JOINTS),
             )

@@ -15,7 +15,6 @@ from core.body import Segment, Side, Site
 from core.gait.events import FootEvents, detect_events
 from core.gait.foot import FootMotion, follow
 from core.gait.strides import MAX_STRIDE_S
-from core.gait.walking import prosthetic_sides
 from core.samples import FloatArray
 from core.session import Recording
 from core.signal.pair import OrientedTrack, moving_mean
@@ -151,7 +150,7 @@ def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
         if not tracks.is_usable(recording, site):
             continue
         worn = tracks.oriented(recording, site, block)
-        is_rigid = side in prosthetic_sides(tracks.session.patient)
+        is_rigid = side in tracks.session.patient.prosthetic_sides
         received_s = tuple((one.track.start_s, one.track.end_s) for one in worn)
         pieces = (piece for whole in worn for piece in moving_pieces(whole))
         feet[side] = ReceivedFoot(site, received_s, tuple(swings_of(piece, is_rigid) for piece in pieces))

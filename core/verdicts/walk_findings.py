@@ -5,11 +5,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from core.body import Segment, Side, Site
+from core.body import LEG_JOINTS, Segment, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.hip.results import PelvisTurn
 from core.parameters import PEAK_WINDOWS
+from core.prosthesis import NOT_STATED, Prostheses
 from core.results import RecordingAnalysis, SideGait
 from core.timed.found import Turn
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
@@ -39,6 +40,13 @@ def about_prosthesis(recordings: Iterable[RecordingAnalysis]) -> list[Finding]:
         if gait.is_toe_off_biased and len(gait.strides)
     }
     return [Finding("prosthetic_toe_off", Severity.INFO, f"{side}_{Segment.FOOT}") for side in Side if side in late]
+
+
+def about_rigid_feet(worn: Prostheses, recordings: Iterable[RecordingAnalysis]) -> list[Finding]:
+    """A foot that is stated to have no joint bends in itself: its angle is the foot's against the shank."""
+    ankles = {joint for recording in recordings for joint in recording.joints if not joint.is_knee}
+    rigid = [joint for joint in LEG_JOINTS if joint in ankles and worn.get(joint.side, NOT_STATED).has_rigid_foot]
+    return [Finding("foot_against_shank", Severity.INFO, str(joint)) for joint in rigid]
 
 
 def _about_events(where: str, gait: SideGait) -> Iterator[Finding]:

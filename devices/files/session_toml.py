@@ -19,6 +19,7 @@ from core.alignment import alignment_of_table, alignment_table
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.findings import Finding, Severity
 from core.goals import goal_table, goals_of_tables
+from core.prosthesis import prostheses_of_tables, prostheses_tables
 from core.samples import RateKind, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import TABLE_KEYS, planned_of_table, planned_table
@@ -30,6 +31,7 @@ FILE_NAME = "session.toml"
 CORRECT_IT = f"Correct {FILE_NAME}"
 STATES_FORMAT = f'The first line of session.toml must be format = "{FORMAT}"'
 SIDES = ("left", "right", "both", "none", "")
+PROSTHESES = "prosthesis"  # of the patient, a table for each side
 DEEPEST = 50  # tables and lists within each other; ours need four
 
 Check = Callable[[object], Any]
@@ -210,7 +212,9 @@ def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
     patient_values, patient_unknown = _take(tables["patient"], PATIENT, "[patient]")
     zero_deg, zero_unknown = _take(tables["zero"], ZERO, "[zero]")
     goals = goals_of_tables(patient_unknown.get("goals"))
+    prostheses, not_understood = prostheses_of_tables(patient_unknown.pop(PROSTHESES, {}))
     patient_unknown = {key: value for key, value in patient_unknown.items() if not (key == "goals" and goals)}
+    patient_unknown |= {PROSTHESES: not_understood} if not_understood is not None else {}
     signs, sign_unknown = _take(tables["sign"], SIGN, "[sign]")
     sensors = {site: _sensor(tables["sensors"], site) for site in Site if site in tables["sensors"]}
     nested = {
@@ -224,7 +228,7 @@ def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
     top = {key: value for key, value in document.items() if key not in known}
     session = Session(
         recordings=(),
-        patient=Patient(**patient_values, goals=goals or (), unknown=patient_unknown),
+        patient=Patient(**patient_values, goals=goals or (), prostheses=prostheses, unknown=patient_unknown),
         sensors=sensors,
         zero_rad={Joint(key): math.radians(value) for key, value in zero_deg.items()},
         turned_sign={Joint(key): value for key, value in signs.items()},
@@ -391,7 +395,9 @@ def _render(thing: Session | Patient | SensorInfo | Recording, known: Mapping[st
 
 def _render_patient(patient: Patient) -> dict[str, object]:
     goals = {"goals": [goal_table(goal) for goal in patient.goals]} if patient.goals else {}
-    return _render(patient, PATIENT) | goals | dict(patient.unknown)
+    prostheses = prostheses_tables(patient.prostheses, patient.unknown.get(PROSTHESES))
+    worn = {PROSTHESES: prostheses} if prostheses else {}
+    return _render(patient, PATIENT) | goals | worn | {k: v for k, v in patient.unknown.items() if k not in worn}
 
 
 def _render_plan(plan: Plan) -> dict[str, object]:

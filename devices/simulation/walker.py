@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.body import LEG_JOINTS, Joint, Segment, Side, Site
+from core.prosthesis import stated_only
 from core.samples import FloatArray, ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.walker_body import (
@@ -182,7 +183,8 @@ def _session(settings: WalkerSettings, recordings: list[Recording]) -> Session:
         )
         for site in settings.sites
     }
-    patient = Patient(code="DEMO-1", affected_side=stiff, prosthetic_side=prosthetic)
+    fitted = {settings.prosthetic_side: settings.fitted} if settings.prosthetic_side else {}
+    patient = Patient(code="DEMO-1", affected_side=stiff, prosthetic_side=prosthetic, prostheses=stated_only(fitted))
     return Session(recordings=tuple(recordings), patient=patient, sensors=sensors, is_simulated=True)
 
 
@@ -283,7 +285,7 @@ def _pelvis_poses(
 
 def _is_bare(legs: Mapping[Side, Leg], site: Site) -> bool:
     """Whether a site is on a prosthesis, where there is no tissue."""
-    return legs[site.leg_side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
+    return legs[site.leg_side].foot is not None and SEGMENT_ROW[site.segment] > 0
 
 
 def _following(leg: Leg, motion: LegMotion, site: Site, gains: Mapping[Joint, float]) -> FloatArray | None:
@@ -341,7 +343,7 @@ def _stand_or_walk(
         ample = required.standing_before_s + required.standing_after_s + 2.2 * slowest * (required.strides + 2)
         time_s = _fine_clock(settings, ample)
         first = list(Side)[int(rng.integers(2))]
-        plan = plan_walk(required, time_s, first, settings.prosthetic_side, rng, changes)
+        plan = plan_walk(required, time_s, first, {side: leg.foot for side, leg in legs.items()}, rng, changes)
         time_s = time_s[time_s <= plan.duration_s + MARGIN_S]
         plan = replace(plan, hip_path_m=plan.hip_path_m[: len(time_s)])
         legs = {side: set_up(leg, required.prosthesis) for side, leg in legs.items()}

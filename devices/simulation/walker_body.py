@@ -7,8 +7,16 @@ from enum import StrEnum
 import numpy as np
 
 from core.body import LEG_SITES, Segment, Side, Site
+from core.prosthesis import NOT_STATED, KneeKind, Prosthesis
 from core.samples import FloatArray, RateKind
-from devices.simulation.walker_prosthesis import AS_BUILT, ProsthesisSetting
+from devices.simulation.walker_prosthesis import (
+    AS_BUILT,
+    ProsthesisSetting,
+    ProstheticFoot,
+    built,
+    foot_of,
+    with_own_knee,
+)
 
 
 class Tissue(StrEnum):
@@ -356,6 +364,9 @@ class WalkerSettings:
         Sites whose sensor has other errors than `errors`.
     loose_straps
         How loosely sites are strapped: 1 turns a foot's sensor by some degrees in swing and after landing.
+    fitted
+        Level, knee and foot of the prosthesis on `prosthetic_side`; the session states them. Not stated: a hinge for a
+        knee, and a stiff foot.
     stiff_knee_side
         A leg whose knee bends by a quarter only.
     tissue_gain, tissue_gain_sd
@@ -374,6 +385,7 @@ class WalkerSettings:
     sites: tuple[Site, ...] = LEG_SITES
     tissue: Tissue = Tissue.RIGID
     prosthetic_side: Side | None = None
+    fitted: Prosthesis = NOT_STATED
     stiff_knee_side: Side | None = None
     rate_hz: float = 100.0
     site_rates_hz: Mapping[Site, float] = field(default_factory=dict)
@@ -408,7 +420,7 @@ class Leg:
     """One leg of the patient. Segment axes: x forward, y left, z up in neutral stance, on both legs.
 
     A segment's origin is its proximal joint: hip, knee, ankle. `knee_axis` and `ankle_axis` (unit, clinical sign) are
-    the same vector in both their segments' axes.
+    the same vector in both their segments' axes. `foot` is a prosthetic one, None where the ankle is the patient's.
     """
 
     side: Side
@@ -421,7 +433,8 @@ class Leg:
     ankle_gain: float
     toe_out_rad: float
     knee_rotation_per_flexion: float
-    is_prosthetic: bool
+    foot: ProstheticFoot | None = None
+    fitted: Prosthesis = NOT_STATED
     prosthesis: ProsthesisSetting = AS_BUILT
 
     @property
@@ -429,9 +442,20 @@ class Leg:
         """+1 where outward is +y, the left leg; -1 on the right."""
         return 1.0 if self.side is Side.LEFT else -1.0
 
+    @property
+    def is_polycentric(self) -> bool:
+        return self.fitted.knee is KneeKind.POLYCENTRIC
+
+    @property
+    def has_own_knee(self) -> bool:
+        """Whether there is a prosthesis, and the knee above it is the patient's."""
+        return self.fitted.level is not None and not self.fitted.has_knee
+
 
 HEEL_M = np.array([-0.05, 0.0, -0.08])  # lowest points of the foot, from the ankle
 TOE_M = np.array([0.15, 0.0, -0.08])
+
+SHORT_FOOT_GAIN = 0.6  # of the push-off, where a part of the foot is left
 
 SENSOR_PLACES_M = {  # from the proximal joint, y outward: side of the thigh, front of the shin, instep
     Segment.THIGH: np.array([0.02, 0.07, -0.22]),
@@ -442,8 +466,14 @@ SENSOR_PLACES_M = {  # from the proximal joint, y outward: side of the thigh, fr
 
 
 def set_up(leg: Leg, setting: ProsthesisSetting) -> Leg:
-    """The leg with its prosthesis set so; the same leg where it is none."""
-    if not leg.is_prosthetic or setting == AS_BUILT:
+    """The leg with its prosthesis set so; the same leg where it is none, or has no foot to be set."""
+    if leg.foot is None:
+        return leg
+    if setting == AS_BUILT:
+        setting = built(leg.fitted)
+    if leg.has_own_knee:
+        setting = with_own_knee(setting)
+    if setting == AS_BUILT:
         return leg
     return replace(leg, prosthesis=setting, shank_m=leg.shank_m + 1e-3 * setting.height_mm)
 
@@ -452,11 +482,15 @@ def make_leg(settings: WalkerSettings, side: Side) -> Leg:
     """One leg of the body that the settings' seed gives, in segment axes."""
     rng = np.random.default_rng([settings.body, 1, list(Side).index(side)])
     is_prosthetic = settings.prosthetic_side is side
+    fitted = settings.fitted if is_prosthetic else NOT_STATED
+    foot = foot_of(fitted) if is_prosthetic else None
+    has_own_knee = not is_prosthetic or (fitted.level is not None and not fitted.has_knee)
+    has_weak_ankle = is_prosthetic and foot is None
     knee_axis = np.array([0.0, 1.0, 0.0]) + rng.normal(0.0, np.tan(np.deg2rad(3.0)), 3) * [1, 0, 1]
     # the malleoli: the lateral one is lower and further back (Isman & Inman 1969: 80 deg to the tibia, 84 to the foot)
     outward = 1.0 if side is Side.LEFT else -1.0
     ankle_axis = np.array([outward * 0.08, -1.0, outward * 0.10]) + rng.normal(0.0, 0.04, 3) * [1, 0, 1]
-    has_rotation = settings.tissue is not Tissue.RIGID and not is_prosthetic
+    has_rotation = settings.tissue is not Tissue.RIGID and has_own_knee
     return Leg(
         side=side,
         thigh_m=0.43 * rng.normal(1.0, 0.01),
@@ -465,9 +499,10 @@ def make_leg(settings: WalkerSettings, side: Side) -> Leg:
         ankle_axis=ankle_axis / np.linalg.norm(ankle_axis),
         standing_knee_rad=np.deg2rad(np.clip(rng.normal(4.0, 2.0), 0.5, 9.0)),
         knee_gain=rng.normal(1.0, 0.03) * (0.25 if settings.stiff_knee_side is side else 1.0),
-        ankle_gain=rng.normal(1.0, 0.05),
+        ankle_gain=rng.normal(1.0, 0.05) * (SHORT_FOOT_GAIN if has_weak_ankle else 1.0),
         toe_out_rad=outward * np.deg2rad(rng.normal(7.0, 2.0)),
         # internal rotation turns the front of the shank inward: about -z on the left, +z on the right
         knee_rotation_per_flexion=-outward * 0.1 if has_rotation else 0.0,
-        is_prosthetic=is_prosthetic,
+        foot=foot,
+        fitted=fitted,
     )

@@ -103,7 +103,7 @@ def plan_bout(
     plans = {
         side: plan_foot(
             gaits[side],
-            False,
+            None,
             contact[k::2],
             np.concatenate([hip_path[:1], ankle[k::2]]) - HIP_AHEAD_OF_ANKLE_M,
             np.ones(len(contact[k::2])),

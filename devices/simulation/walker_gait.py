@@ -73,7 +73,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
     if gait.is_ankle_stiff:
         pitch, steps = _roll_as_one(leg, plan, knee, time_s)
     else:
-        pitch = _stance_pitch(leg, plan, time_s)
+        pitch = _stance_pitch(leg, plan, knee, time_s)
     pitch = smooth(pitch, step_s, PITCH_WIDTH_S) + SHOCK_PITCH_RAD * shock
     rolled_x, rolled_z = _roll(pitch)
     rolled_x = rolled_x + SHOCK_M * shock
@@ -83,7 +83,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
         _bridge(ahead, swing, step_s)
     lean = _shank_lean(leg, ahead, knee)
     ankle = pitch + lean
-    lifted = np.deg2rad(2.0) - leg.prosthesis.plantar_rad if leg.is_prosthetic else gait.lifted_rad
+    lifted = gait.lifted_rad if leg.foot is None else np.deg2rad(leg.foot.swing_deg) - leg.prosthesis.plantar_rad
     if gait.is_ankle_stiff:
         lifted = _standing_lean(leg)
     for swing in swings:
@@ -159,6 +159,8 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
     """Knee flexion (n,) over all strides, of slightly different size each."""
     stance_s = gait.stance * gait.stride_s
     rest = float(np.rad2deg(leg.standing_knee_rad))
+    if leg.prosthesis.is_locked:
+        return np.full_like(time_s, leg.standing_knee_rad)
     rows: list[tuple[float, float]] = []
     last = len(steps.contact_s) - 1
     for i in range(last + 1):
@@ -188,7 +190,7 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
     return np.deg2rad(_knots(time_s, rows if last else [], rest))
 
 
-def _stance_pitch(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> FloatArray:
+def _stance_pitch(leg: Leg, plan: WalkPlan, knee: FloatArray, time_s: FloatArray) -> FloatArray:
     """Pitch of the foot (n,), toes up positive, zero when the sole is flat; in swing it means nothing."""
     steps, gait, w = plan.steps[leg.side], plan.gaits[leg.side], PITCH_WIDTH_S
     beyond_s = MARGIN_S + 2.5 * w  # what smoothing spoils is further away than what swing looks at
@@ -203,11 +205,27 @@ def _stance_pitch(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> FloatArray:
     for i in range(len(steps.contact_s) - 1):
         rise, end = steps.heel_rise_s[i] + w, steps.toe_off_s[i]
         here = slice(*np.searchsorted(time_s, [rise, end + beyond_s]))
+        if leg.foot is not None and leg.foot.springs_back:
+            ahead_m = plan.hip_path_m[here] - steps.ankle_m[i]
+            pitch[here] = _sprung_back_pitch(leg, ahead_m, knee[here], (time_s[here] - rise) / (end - rise))
+            continue
         hip_ahead_m = float(np.interp(end, time_s, plan.hip_path_m)) - steps.ankle_m[i]
         off = _toe_off_pitch(leg, gait, hip_ahead_m, steps.knee_deg[i], steps.ankle_deg[i]) - rest
         u = (time_s[here] - rise) / (end - rise)
         # a stiff ankle turns the foot with the shank, a human one holds it down for longer
-        pitch[here] = rest + off * (0.3 * u + 0.7 * u**2 if leg.is_prosthetic else 0.6 * u**2 + 1.4 * u**3 - u**4)
+        pitch[here] = rest + off * (0.6 * u**2 + 1.4 * u**3 - u**4 if leg.foot is None else 0.3 * u + 0.7 * u**2)
+    return pitch
+
+
+def _sprung_back_pitch(leg: Leg, ahead_m: FloatArray, knee: FloatArray, u: FloatArray) -> FloatArray:
+    """The pitch (n,) under which a foot without a joint is as built again, and at rest, when it leaves the floor."""
+    flat = _shank_lean(leg, ahead_m, knee)
+    begun = (flat[1] - flat[0]) / (u[1] - u[0])
+    left = np.clip(1.0 - u, 0.0, 1.0)
+    ankle = left**2 * (flat[0] * (1.0 + 2.0 * u) + begun * u) - leg.prosthesis.plantar_rad * (1.0 - left)
+    pitch = np.zeros_like(u)
+    for _ in range(8):  # a contraction, as at toe-off
+        pitch = ankle - _shank_lean(leg, ahead_m - _roll(pitch)[0], knee)
     return pitch
 
 
@@ -215,7 +233,7 @@ def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
     """The pitch over that of mid-stance that lands the heel with the ankle at about zero; the last step nearly flat."""
     if gait.contact_pitch_rad < 0.0:  # on the toes
         return gait.contact_pitch_rad
-    required = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0) - leg.prosthesis.plantar_rad
+    required = np.deg2rad(1.0 if leg.foot is None else leg.foot.contact_deg) - leg.prosthesis.plantar_rad
     lean = _shank_lean(leg, np.array([hip_ahead_m]), np.deg2rad(np.array([4.0])))
     most = gait.contact_pitch_rad + max(0.0, -leg.prosthesis.plantar_rad)
     return float(np.clip(required - lean[0], np.deg2rad(2.0), most))
@@ -227,8 +245,11 @@ def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, an
     if np.isfinite(gait.toe_off_pitch_rad):
         return gait.toe_off_pitch_rad - more_rad
     knee = np.deg2rad(np.array([3.5 + 27.5 * leg.knee_gain * gait.knee_swing + 27.5 * knee_deg / KNEE_PEAK_DEG]))
-    built = np.deg2rad(-2.0) - leg.prosthesis.plantar_rad
-    required = built if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
+    if leg.prosthesis.is_locked:
+        knee = np.array([leg.standing_knee_rad])
+    required = gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
+    if leg.foot is not None:
+        required = np.deg2rad(leg.foot.toe_off_deg) - leg.prosthesis.plantar_rad
     pitch = np.array([-0.5])
     for _ in range(8):  # the rolling foot carries the ankle forward: a contraction by a fifth each time
         pitch = required - _shank_lean(leg, hip_ahead_m - _roll(pitch)[0], knee)

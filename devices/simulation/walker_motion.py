@@ -7,6 +7,7 @@ from scipy.ndimage import uniform_filter1d
 
 from core.samples import FloatArray
 from devices.simulation.walker_body import FreeMotion, Leg, Motion
+from devices.simulation.walker_prosthesis import polycentric_shift_m
 
 X_AXIS, Y_AXIS, Z_AXIS = np.eye(3)
 
@@ -79,13 +80,14 @@ def knee_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
 def ankle_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
     """Give the rotations (n, 3, 3) from the foot's axes to the shank's."""
     dorsiflexion = rotation_about(leg.ankle_axis, angles.ankle)
-    if leg.is_prosthetic:
+    inverts = 1.0 if leg.foot is None else leg.foot.inverts
+    if inverts == 0.0:
         return dorsiflexion
     # inversion lifts the inner edge: about -x on the left foot, +x on the right
     forward = _normal_to(leg.ankle_axis, X_AXIS)
     upward = np.cross(leg.ankle_axis, forward)
-    beside = rotation_about(forward, -leg.outward * angles.inversion)
-    return dorsiflexion @ beside @ rotation_about(upward, leg.outward * angles.rotation)
+    beside = rotation_about(forward, -leg.outward * inverts * angles.inversion)
+    return dorsiflexion @ beside @ rotation_about(upward, leg.outward * inverts * angles.rotation)
 
 
 def _normal_to(axis: FloatArray, direction: FloatArray) -> FloatArray:
@@ -99,6 +101,8 @@ def hang_from_hip(leg: Leg, thigh: FloatArray, hip_m: FloatArray, angles: JointA
     shank = thigh @ knee_rotation(leg, angles)
     foot = shank @ ankle_rotation(leg, angles)
     knee_m = hip_m - leg.thigh_m * thigh[:, :, 2]
+    if leg.is_polycentric:
+        knee_m = knee_m + np.einsum("nij,nj->ni", thigh, polycentric_shift_m(angles.knee))
     ankle_m = knee_m - leg.shank_m * shank[:, :, 2]
     return np.stack([thigh, shank, foot]), np.stack([hip_m, knee_m, ankle_m])
 
@@ -151,7 +155,7 @@ def move_freely(
     flexion = np.deg2rad(ease * 15.0 * thigh_strength + 18.0 * size * np.sin(circle))
     abduction = np.deg2rad(ease * 8.0 * thigh_strength + 15.0 * size * np.cos(circle)) * beside
     hip_rotation = np.deg2rad(10.0) * size * swing(0.8) * beside
-    ankle_limit = 0.2 if leg.is_prosthetic else 1.0
+    ankle_limit = 1.0 if leg.foot is None else leg.foot.moved_by_hand
     angles = JointAngles(
         knee=leg.standing_knee_rad + ease * strength * leg.knee_gain * np.deg2rad(42.0 + 32.0 * swing(0.75)),
         ankle=ease * ankle_strength * ankle_limit * leg.ankle_gain * np.deg2rad(15.0) * swing(0.9),

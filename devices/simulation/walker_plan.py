@@ -10,6 +10,7 @@ from core.samples import FloatArray
 from devices.simulation.walker_body import Walk
 from devices.simulation.walker_manners import Gait, gait_at, gaits_of
 from devices.simulation.walker_motion import smooth_step
+from devices.simulation.walker_prosthesis import ProstheticFoot
 from devices.simulation.walker_variation import NO_CHANGES, FootChanges, StepChanges
 
 HIP_AHEAD_OF_ANKLE_M = 0.03  # standing, over the middle of the foot
@@ -68,11 +69,11 @@ def plan_walk(
     walk: Walk,
     time_s: FloatArray,
     first: Side,
-    prosthetic_side: Side | None,
+    feet: Mapping[Side, ProstheticFoot | None],
     rng: np.random.Generator,
     changes: StepChanges = NO_CHANGES,
 ) -> WalkPlan:
-    """Plan footsteps on the fine clock (n,), from the start of the recording."""
+    """Plan footsteps on the fine clock (n,), from the start of the recording; `feet` are the prosthetic ones."""
     gaits = gaits_of(walk.speed_m_s, walk.manner_of_side, walk.manner)
     gait = gaits[first]
     stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
@@ -101,7 +102,7 @@ def plan_walk(
     plans = {
         side: plan_foot(
             gaits[side],
-            side is prosthetic_side,
+            feet.get(side),
             contact[k::2],
             np.concatenate([[hip_path[0]], ankle[k::2]]) - HIP_AHEAD_OF_ANKLE_M,
             stride_time[k::2],
@@ -116,21 +117,21 @@ def plan_walk(
 
 def plan_foot(
     gait: Gait,
-    is_prosthetic: bool,
+    foot: ProstheticFoot | None,
     contact_s: FloatArray,
     ankle_m: FloatArray,
     stride_time: FloatArray,
     changes: FootChanges,
 ) -> StepPlan:
     """Plan a foot's k + 1 stances from contacts (k,) and ankle places (k + 1,), standing first."""
-    full_contact, heel_rise = (0.14, 0.30) if is_prosthetic else (gait.full_contact, gait.heel_rise)
+    turned = gait if foot is None else foot
     swing_s = (1.0 - gait.stance - 0.01 * changes.stance_percent) * gait.stride_s * stride_time
     starts = np.concatenate([[-np.inf], contact_s])
     ends = np.concatenate([contact_s - swing_s, [np.inf]])
     return StepPlan(
         contact_s=starts,
-        full_contact_s=starts + full_contact * gait.stride_s,
-        heel_rise_s=ends - (gait.stance - heel_rise) * gait.stride_s,
+        full_contact_s=starts + turned.full_contact * gait.stride_s,
+        heel_rise_s=ends - (gait.stance - turned.heel_rise) * gait.stride_s,
         toe_off_s=ends,
         ankle_m=ankle_m,
         knee_deg=np.append(changes.knee_deg, 0.0),
@@ -143,5 +144,5 @@ def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
     """Plan standing with both feet side by side, without a step."""
     gait = gait_at(1.19)
     place_m = np.array([-HIP_AHEAD_OF_ANKLE_M])
-    foot = plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
+    foot = plan_foot(gait, None, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
     return WalkPlan(dict.fromkeys(Side, gait), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))

@@ -1,19 +1,22 @@
 """Check on the project's own patient that what is stated about an angle's certainty holds.
 
-    python -m tests.benchmarks.certainty --seeds 12 [--first 0]
+    python -m tests.benchmarks.certainty --seeds 12 [--first 0] [--stated]
 
 One line per tissue, wearer, kind of joint and kind of recording: share of samples within two standard deviations after
 removing the mean, pooled (90 to 100 % required) and in the worst session, and the standard deviation over the error.
+With `--stated` the wearers are those whose level, knee or foot is stated, beside the same walks of the side alone.
 """
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from core.analysis import analyse
 from core.body import Joint, Side
+from core.prosthesis import NOT_STATED, AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.session import Patient
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.driver import options
@@ -30,13 +33,40 @@ TISSUES = {
     "real": (Tissue.REAL, 0.0),
     "real, turning": (Tissue.REAL, TURN_RAD),
 }
-# what is worn, and what is declared; an ankle with play is a prosthetic one that moves as a bare person's
-WORN: dict[str, tuple[Side | None, str]] = {
-    "person": (None, "none"),
-    "prosthesis": (Side.LEFT, "left"),
-    "undeclared": (Side.LEFT, "none"),
-    "with play": (None, "left"),
+
+
+@dataclass(frozen=True, slots=True)
+class Wearer:
+    """What is worn on the left, and what is declared of it."""
+
+    fitted: Prosthesis | None
+    patient: Patient = field(default_factory=partial(Patient, prosthetic_side="left"))
+
+
+# an ankle with play is a prosthetic one that moves as a bare person's
+WORN = {
+    "person": Wearer(None, Patient()),
+    "prosthesis": Wearer(NOT_STATED),
+    "undeclared": Wearer(NOT_STATED, Patient()),
+    "with play": Wearer(None),
 }
+FITTED = {
+    "partial foot": Prosthesis(AmputationLevel.PARTIAL_FOOT),
+    **{f"transtibial, {foot}": Prosthesis(AmputationLevel.TRANSTIBIAL, foot=foot) for foot in FootKind},
+    **{f"transfemoral, {knee}": Prosthesis(AmputationLevel.TRANSFEMORAL, knee) for knee in KneeKind},
+}
+OF_SIDE, OF_LEVEL = "side alone", "stated"
+
+
+def fitted_wearers() -> dict[str, dict[str, Wearer]]:
+    """Of each prosthesis who states the side alone, and who states all of it."""
+    return {
+        name: {
+            OF_SIDE: Wearer(one),
+            OF_LEVEL: Wearer(one, Patient(prosthetic_side="left", prostheses={Side.LEFT: one})),
+        }
+        for name, one in FITTED.items()
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +79,16 @@ class Coverage:
     sd: float
 
 
-def coverages(settings: WalkerSettings, worn: str = "person") -> Iterator[tuple[str, Coverage]]:
+def coverages(settings: WalkerSettings, worn: Wearer) -> Iterator[tuple[str, Coverage]]:
     """What every joint's angle of one session is worth, by kind of joint and recording; of a wearer's, one leg's."""
-    prosthetic, declared = WORN[worn]
-    simulated = simulate(replace(settings, prosthetic_side=prosthetic))
-    analysis = analyse(replace(simulated.session, patient=Patient(prosthetic_side=declared)))
+    is_worn = worn.fitted is not None
+    side, fitted = (Side.LEFT, worn.fitted) if worn.fitted is not None else (None, NOT_STATED)
+    simulated = simulate(replace(settings, prosthetic_side=side, fitted=fitted))
+    analysis = analyse(replace(simulated.session, patient=worn.patient))
     for recording in analysis.recordings:
         truths = simulated.truth.recordings[recording.name].joints
         for joint, angle in recording.joints.items():
-            if worn != "person" and joint.side is Side.RIGHT:
+            if (is_worn or worn.patient.prosthetic_sides) and joint.side is Side.RIGHT:
                 continue
             truth = truths[joint]
             error = np.rad2deg(angle.angle_rad - np.interp(recording.time_s, truth.time_s, truth.angle_rad))
@@ -73,19 +104,31 @@ def _kind(joint: Joint, is_hinge: bool) -> str:
 
 
 def main() -> None:
-    arguments = options(__doc__, seeds=12, first=0)
-    for name, (tissue, turn_rad) in TISSUES.items():
-        for worn in WORN if tissue is not Tissue.REAL else ("person", "prosthesis"):
-            if worn == "with play" and tissue is not Tissue.RIGID:
+    arguments = options(__doc__, seeds=12, first=0, stated=False)
+    seeds = range(arguments.first, arguments.first + arguments.seeds)
+    for name in TISSUES:
+        if arguments.stated:
+            for worn, wearers in fitted_wearers().items():
+                for declared, wearer in wearers.items():
+                    _print(name, f"{worn}: {declared}", wearer, seeds)
+            continue
+        for worn, wearer in WORN.items():
+            is_real = TISSUES[name][0] is Tissue.REAL
+            if (worn == "with play" and name != "rigid") or (is_real and worn not in ("person", "prosthesis")):
                 continue
-            found: dict[str, list[Coverage]] = defaultdict(list)
-            for settings in SETTINGS.values():
-                for seed in range(arguments.first, arguments.first + arguments.seeds):
-                    of_seed = replace(settings, seed=seed, tissue=tissue, tissue_turn_rad=turn_rad)
-                    for kind, coverage in coverages(of_seed, worn):
-                        found[kind].append(coverage)
-            for kind, many in found.items():
-                print(f"{name:14s} {worn:10s} {kind:20s} {summary(many)}", flush=True)
+            _print(name, worn, wearer, seeds)
+
+
+def _print(name: str, worn: str, wearer: Wearer, seeds: range) -> None:
+    tissue, turn_rad = TISSUES[name]
+    found: dict[str, list[Coverage]] = defaultdict(list)
+    for settings in SETTINGS.values():
+        for seed in seeds:
+            of_seed = replace(settings, seed=seed, tissue=tissue, tissue_turn_rad=turn_rad)
+            for kind, coverage in coverages(of_seed, wearer):
+                found[kind].append(coverage)
+    for kind, many in found.items():
+        print(f"{name:14s} {worn:40s} {kind:27s} {summary(many)}", flush=True)
 
 
 def summary(many: list[Coverage]) -> str:

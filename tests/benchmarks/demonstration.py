@@ -21,7 +21,7 @@ from app.theme.current import load_fonts
 from tests.benchmarks.own_display import own_display, own_environment
 from tests.driver import options
 
-CODES = ("DEMO-KNEE", "DEMO-STROKE", "DEMO-AK")
+CODES = ("DEMO-KNEE", "DEMO-STROKE", "DEMO-AK", "DEMO-BK")
 INSIDE = "from tests.benchmarks.demonstration import measure; measure(is_prepared={})"
 POLL_S = 0.01
 PATIENCE_S = 600.0

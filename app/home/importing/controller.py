@@ -303,5 +303,6 @@ def _named(name: str) -> str:
         "aids": tr("aids"),
         "affected_side": tr("affected side"),
         "prosthetic_side": tr("prosthetic side"),
+        "prostheses": tr("prosthesis"),
         "goals": tr("goals"),
     }.get(name, name)

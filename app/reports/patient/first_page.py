@@ -21,6 +21,7 @@ from app.summary.request import ReportRequest
 from app.summary.tiles import Tile, TileValue, tiles_of
 from app.wording.body import side_name
 from app.wording.patients import aids_in_words
+from app.wording.prostheses import worn_words
 from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, tr, tr_n
 from core.body import Side
@@ -56,18 +57,19 @@ def who(request: ReportRequest) -> str:
     session, patient = request.visit.session, request.visit.session.patient
     is_prosthetic = patient.prosthetic_side not in NOT_STATED
     side = patient.prosthetic_side if is_prosthetic else patient.affected_side
+    worn = [capitalised(one) for one in worn_words(patient)]
     known = [
         {"male": tr("Man"), "female": tr("Woman")}.get(patient.sex, patient.sex),
         tr("born {year}").format(year=patient.birth_year) if patient.birth_year is not None else "",
         f"{fixed(patient.height_m, 2)}\u00a0m" if patient.height_m is not None else "",
         f"{fixed(patient.mass_kg, 0)}\u00a0kg" if patient.mass_kg is not None else "",
-        _side_in_words(side, is_prosthetic=is_prosthetic),
+        *(worn or [_side_in_words(side, is_prosthetic=is_prosthetic)]),
         patient.device,
         tr("no walking aids") if patient.aids == "none" else aids_in_words(patient.aids),
         session.surface,
         name_in_words(request.visit.condition_of(request.shown)),
     ]
-    return " · ".join(typed(one, CONDITION_LENGTH) for one in known if one)
+    return " · ".join(one if one in worn else typed(one, CONDITION_LENGTH) for one in known if one)
 
 
 def comment(request: ReportRequest) -> dict[str, object] | None:

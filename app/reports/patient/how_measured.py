@@ -14,12 +14,15 @@ from app.summary.error_figures import error_figures_in_words
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import fixed, least_error_in_words
 from app.summary.plain_text import breakable, isolated, plain, shortened
+from app.wording.body import name_of
 from app.wording.findings import WHOLE_SESSION
-from app.wording.translation import joined, tr
-from core.body import JointKind, Segment, Side, Site
+from app.wording.prostheses import prosthesis_words
+from app.wording.translation import capitalised, joined, tr
+from core.body import JointKind, Segment, Side, Site, ankle_of, knee_of
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding
 from core.parameters import KNEE_RANGE
+from core.prosthesis import JointNature
 from core.results import AxisSource, Method
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.signal.orientation import accelerometer_time_constant_s
@@ -41,6 +44,7 @@ def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], lis
         (tr("Calibration"), _calibration(facts)),
         (tr("Angles"), _angles(facts)),
         (tr("Events and strides"), _strides(facts)),
+        *([(tr("Prosthesis"), _prostheses(facts))] if facts.visit.analysis.prostheses else []),
     ]
     stated = [
         (tr("Accuracy"), _accuracy()),
@@ -200,6 +204,22 @@ def _strides(facts: Facts) -> str:
         "and strides after a strap moved. Reasons are in the stride file. A peak at the edge of its "
         "search window is shown as “no peak”."
     ).format(source=source)
+
+
+def _prostheses(facts: Facts) -> str:
+    """What was stated of each, and what each joint of its side is taken for therefore."""
+    takes = {
+        JointNature.OWN: tr("{joint}: the patient's own, so its uncertainty is that of a living joint."),
+        JointNature.PROSTHETIC: tr("{joint}: a joint of the prosthesis."),
+        JointNature.RIGID: tr("{joint}: a foot without ankle joint; the angle is the foot relative to the shank."),
+    }
+    sentences: list[str] = []
+    for side, one in facts.visit.analysis.prostheses.items():
+        sentences.append(f"{capitalised(prosthesis_words(side, one))}.")
+        if one.level is not None:
+            found = [joint for joint in (knee_of(side), ankle_of(side)) if joint in facts.walk.joints]
+            sentences += [takes[one.nature_of(joint)].format(joint=capitalised(name_of(joint))) for joint in found]
+    return " ".join(sentences)
 
 
 def _accuracy() -> str:

@@ -120,7 +120,8 @@ class Versioned:
 class PatientRow(Versioned, Base):
     """A patient whose double was merged into another stays, empty, so that merging can be undone.
 
-    `goals`: what was agreed, as `core.goals` writes it; empty where nothing was.
+    `goals`: what was agreed, as `core.goals` writes it; empty where nothing was. `prostheses`: what was stated of each
+    side's, as `core.prosthesis` writes it.
     """
 
     __tablename__ = "patients"
@@ -138,6 +139,7 @@ class PatientRow(Versioned, Base):
     affected_side: Mapped[str]
     prosthetic_side: Mapped[str]
     goals: Mapped[str] = mapped_column(default="", server_default="")
+    prostheses: Mapped[str] = mapped_column(default="", server_default="")
     unknown: Mapped[Mapping[str, object]]
     created_at: Mapped[datetime.datetime]
     deleted_at: Mapped[datetime.datetime | None]

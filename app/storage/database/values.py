@@ -23,11 +23,12 @@ from core.alignment import alignment_of_text
 from core.body import Side, Site
 from core.findings import Finding, Severity
 from core.goals import goals_of_text, goals_text
+from core.prosthesis import prostheses_of_text, prostheses_text
 from core.samples import SensorInfo
 from core.session import Patient, Recording, Session
 from core.timed.protocols import planned_of_text
 
-PATIENT_FIELDS = tuple(field.name for field in fields(Patient) if field.name != "goals")
+PATIENT_FIELDS = tuple(field.name for field in fields(Patient) if field.name not in ("goals", "prostheses"))
 SENSOR_FIELDS = tuple(field.name for field in fields(SensorInfo))
 IN_OTHER_FORM = ("imu", "left_out_s", "alignment", "test")
 RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name not in IN_OTHER_FORM)
@@ -35,12 +36,17 @@ SESSION_FIELDS = ("started", "operator", "surface", "notes", "software", "is_sim
 
 
 def reported_patient(row: PatientRow) -> Patient:
-    return Patient(goals=goals_of_text(row.goals), **{name: getattr(row, name) for name in PATIENT_FIELDS})
+    return Patient(
+        goals=goals_of_text(row.goals),
+        prostheses=prostheses_of_text(row.prostheses),
+        **{name: getattr(row, name) for name in PATIENT_FIELDS},
+    )
 
 
 def patient_in_row(reported: Patient, names: Sequence[str] = PATIENT_FIELDS) -> dict[str, object]:
-    """Some fields of a patient, and the goals, as the row holds them."""
-    return {name: getattr(reported, name) for name in names} | {"goals": goals_text(reported.goals)}
+    """Some fields of a patient, the goals and the prostheses, as the row holds them."""
+    texts = {"goals": goals_text(reported.goals), "prostheses": prostheses_text(reported.prostheses)}
+    return {name: getattr(reported, name) for name in names} | texts
 
 
 def stored_patients(session: OrmSession, *is_required: ColumnElement[bool]) -> list[StoredPatient]:

@@ -59,13 +59,13 @@ class FreeMotionEstimator:
         self,
         site_of: Mapping[str, Site],
         live_sensors: Mapping[str, LiveSensor],
-        prosthetic_sides: frozenset[Side] = frozenset(),
+        prosthetic_joints: frozenset[Joint] = frozenset(),
         without_ankle: frozenset[Side] = frozenset(),
         standing: Mapping[str, FloatArray] | None = None,
     ) -> None:
         self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
         self._sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
-        self._prosthetic_sides, self._without_ankle = prosthetic_sides, without_ankle
+        self._prosthetic_joints, self._without_ankle = prosthetic_joints, without_ankle
         sides = [side for side in Side if any(site.side is side for site in self._sensors)]
         self._legs = {side: self._new_leg(side) for side in sides}
         self._states: dict[Side, FreeMotionState] = {}
@@ -108,7 +108,7 @@ class FreeMotionEstimator:
 
     def _new_leg(self, side: Side) -> LiveFreeMotion:
         of_leg = {site: sensor for site, sensor in self._sensors.items() if site.side in (side, None)}
-        return LiveFreeMotion(of_leg, self._prosthetic_sides, self._without_ankle)
+        return LiveFreeMotion(of_leg, self._prosthetic_joints, self._without_ankle)
 
 
 class UnplacedFreeMotionEstimator:
@@ -128,12 +128,12 @@ class UnplacedFreeMotionEstimator:
         self,
         live_sensors: Mapping[str, LiveSensor],
         first_moved: Side | None,
-        prosthetic_sides: frozenset[Side] = frozenset(),
+        prosthetic_joints: frozenset[Joint] = frozenset(),
         without_ankle: frozenset[Side] = frozenset(),
         standing: Mapping[str, FloatArray] | None = None,
     ) -> None:
         self._sensors, self._first_moved, self._standing = live_sensors, first_moved, standing or {}
-        self._prosthetic_sides, self._without_ankle = prosthetic_sides, without_ankle
+        self._prosthetic_joints, self._without_ankle = prosthetic_joints, without_ankle
         self._search = ChainSearch(live_sensors, live_sensors, standing)
         self._placed: FreeMotionEstimator | None = None
         self._held: list[dict[str, ImuBlock]] = []
@@ -184,7 +184,7 @@ class UnplacedFreeMotionEstimator:
         site_of = self._reported()
         if site_of:
             self._placed = FreeMotionEstimator(
-                site_of, self._sensors, self._prosthetic_sides, self._without_ankle, self._standing
+                site_of, self._sensors, self._prosthetic_joints, self._without_ankle, self._standing
             )
 
     def _reported(self) -> dict[str, Site]:

@@ -9,7 +9,7 @@ from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, CLOSED, GaugeState,
 from app.widgets.hint import Hint
 from app.wording.body import name_of, spelled_out
 from app.wording.translation import capitalised, tr, tr_n
-from core.body import Joint, Segment, Side, Site
+from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Required
 from core.live.free_motion import FreeMotionState
 
@@ -20,18 +20,18 @@ RESTS_S = 6.0  # with nothing left to ask for, before what was given up is asked
 ONCE_MORE_S = 8.0
 
 
-def required_of(joint: Joint, prosthetic_sides: frozenset[Side]) -> Required:
+def required_of(joint: Joint, prosthetic: frozenset[Joint]) -> Required:
     """What closes this joint."""
-    return PROSTHESIS if joint.side in prosthetic_sides else HUMAN
+    return PROSTHESIS if joint in prosthetic else HUMAN
 
 
-def hint_for(missing: Missing, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
-    """Ask for one motion; on a prosthetic side the therapist moves the limb."""
+def hint_for(missing: Missing, prosthetic: frozenset[Joint] = frozenset()) -> Hint:
+    """Ask for one motion; where the prosthesis has the joint that moves it the therapist moves the limb."""
     is_circle = missing.movement is Movement.CIRCLE
     sentence = _circle(missing.site) if is_circle else _bend(missing.site)
     icon = Icon.REPEAT if is_circle else Icon.BEND
     phrase = f"{'circle' if is_circle else 'bend'}-{missing.site}"
-    if missing.site.side in prosthetic_sides:
+    if _moved_by(missing.site) in prosthetic:
         how = (
             tr("The therapist moves the limb. Reverse direction from time to time.")
             if is_circle
@@ -43,6 +43,11 @@ def hint_for(missing: Missing, prosthetic_sides: frozenset[Side] = frozenset()) 
         return Hint(sentence, how, tr("Reverse direction from time to time. The patient may sit."), icon, phrase)
     how = tr("Back and forth, as far as comfortable. Moving the leg by hand is fine.")
     return Hint(sentence, how, tr("Back and forth. You may move the limb by hand."), icon, phrase)
+
+
+def _moved_by(site: Site) -> Joint:
+    """The joint that a segment is moved in; of a thigh the knee, below which the limb is a load to be carried."""
+    return ankle_of(site.leg_side) if site.segment is Segment.FOOT else knee_of(site.leg_side)
 
 
 def first_hint() -> Hint:
@@ -58,17 +63,17 @@ def unplaced_hint() -> Hint:
     return Hint(tr("Move the left leg first"), how, tr("Then the right leg."), phrase="move-left-leg-first")
 
 
-def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[Joint, GaugeState]:
+def judged(motion: FreeMotionState, prosthetic: frozenset[Joint]) -> dict[Joint, GaugeState]:
     """Give the words for each joint, whichever is asked for now: the gauge's word is the rail's and the hint's."""
     return {
-        joint: gauge_face(joint, state, required_of(joint, prosthetic_sides), is_now=False).state
+        joint: gauge_face(joint, state, required_of(joint, prosthetic), is_now=False).state
         for joint, state in motion.joints.items()
     }
 
 
-def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> str:
+def enough_for(motion: FreeMotionState, prosthetic: frozenset[Joint]) -> str:
     """State for which joints motion is enough: ankles count by their centre, non-hinges are named."""
-    states = judged(motion, prosthetic_sides)
+    states = judged(motion, prosthetic)
     if states and all(state in CLOSED for state in states.values()):
         return tr("enough movement")
     knees = [state for joint, state in states.items() if joint.is_knee]
@@ -86,9 +91,9 @@ def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> st
     return "; ".join([stated, *named])
 
 
-def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
+def last_hint(motion: FreeMotionState, prosthetic: frozenset[Joint] = frozenset()) -> Hint:
     """When nothing is left to do: enough motion, a joint that is no hinge, or some only as good as it gave."""
-    states = judged(motion, prosthetic_sides)
+    states = judged(motion, prosthetic)
     then = tr("Walking follows automatically.")
     if all(state in CLOSED for state in states.values()):
         ankles = [joint for joint in states if not joint.is_knee]
@@ -133,13 +138,13 @@ def played_hint(has_played: bool) -> Hint:
     return Hint(tr("The replay has ended"), how, tr("Record again, or continue."), Icon.INFO, "replay-ended")
 
 
-def recorded_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
+def recorded_hint(motion: FreeMotionState, prosthetic: frozenset[Joint] = frozenset()) -> Hint:
     """Once it is recorded: what came of it, as far as that is known; of an earlier day it is not."""
     how = tr("Continue to walking, or repeat one leg.")
     if not motion.joints:
         return Hint(tr("Free motion recorded"), how, how, Icon.CHECK, "recorded")
     if motion.is_done:
-        return replace(last_hint(motion, prosthetic_sides), how=how, how_short=how)
+        return replace(last_hint(motion, prosthetic), how=how, how_short=how)
     return Hint(tr("Stopped early"), how, how, Icon.INFO, "stopped-early")
 
 
@@ -181,8 +186,8 @@ class HintHold:
     meanwhile, or the motion was not the one that was meant.
     """
 
-    def __init__(self, prosthetic_sides: frozenset[Side] = frozenset()) -> None:
-        self._prosthetic_sides = prosthetic_sides
+    def __init__(self, prosthetic: frozenset[Joint] = frozenset()) -> None:
+        self._prosthetic = prosthetic
         self._asked: Asked | None = None
         self._since_s = -math.inf
         self._settled_s: float | None = None  # since when nothing is left to ask for
@@ -208,7 +213,7 @@ class HintHold:
         missing = motion.joints[weakest].missing
         if missing is None or not any(state.moved_s for state in motion.joints.values()):
             return Asked(first_hint())
-        return Asked(hint_for(missing, self._prosthetic_sides), weakest, missing.site)
+        return Asked(hint_for(missing, self._prosthetic), weakest, missing.site)
 
     def _rest(self, motion: FreeMotionState) -> Asked:
         """With nothing left to ask of knees and ankles: hips may still be shown where some did not close."""
@@ -216,7 +221,7 @@ class HintHold:
         if not motion.is_done:
             return Asked(first_hint())
         if hip is None or all(state.is_closed for state in motion.joints.values()):
-            return Asked(last_hint(motion, self._prosthetic_sides))
+            return Asked(last_hint(motion, self._prosthetic))
         return Asked(hip_hint(), hip, Site.PELVIS)
 
     def _given_up(self, motion: FreeMotionState, now_s: float) -> Joint | None:
@@ -244,7 +249,7 @@ class HintHold:
 
 
 def price_of_stopping(
-    motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset(), can_move: bool = True
+    motion: FreeMotionState, prosthetic: frozenset[Joint] = frozenset(), can_move: bool = True
 ) -> str:
     """Say what stopping now leaves undone; empty where nothing is."""
     if not motion.joints:
@@ -257,7 +262,7 @@ def price_of_stopping(
     if not is_open:
         return ""
     worst = max(is_open, key=lambda joint: motion.joints[joint].wanting)
-    figure = _figure(worst, motion.joints[worst], required_of(worst, prosthetic_sides))
+    figure = _figure(worst, motion.joints[worst], required_of(worst, prosthetic))
     if motion.joints[worst].is_plateau or len(is_open) > 1 or not can_move:
         rest = tr("If you continue, the report states this uncertainty.")
     elif worst.side is Side.LEFT:

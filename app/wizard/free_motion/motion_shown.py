@@ -19,7 +19,7 @@ SILENT_S = 1.0
 
 def gauge_faces(visit: "Visit", motion: FreeMotionState, now: Joint | None) -> dict[Joint, GaugeFace]:
     """Give each joint's gauge; `now` is the one whose motion is asked for."""
-    worn, prosthetic = visit.sensors.sensor_at, visit.prosthetic_sides
+    worn, prosthetic = visit.sensors.sensor_at, visit.prosthetic_joints
     faces = {}
     for joint in LEG_JOINTS:
         needs = needed_note(joint, visit.sensors.detected)

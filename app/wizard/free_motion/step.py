@@ -119,7 +119,7 @@ class FreeMotionStep(Step):
             return ""
         if not joints:
             return tr("stopped early") if self._is_cut_short else ""
-        return enough_for(self._motion, self._visit.prosthetic_sides)
+        return enough_for(self._motion, self._visit.prosthetic_joints)
 
     @property
     def state(self) -> StepState:
@@ -142,7 +142,7 @@ class FreeMotionStep(Step):
         self._is_in_sight = True
         if self._then is AfterRecording.WORD:
             self._then = AfterRecording.ITSELF
-        self._hold = HintHold(self._visit.prosthetic_sides)
+        self._hold = HintHold(self._visit.prosthetic_joints)
         if self._seen_at != self._visit.sensors.site_of and not self._is_recording:
             self._motion = FreeMotionState()  # of other positions
         if not self._has_moved and not self._is_recording:
@@ -193,7 +193,7 @@ class FreeMotionStep(Step):
         go_on = BarAction(tr("Continue to walking"), leave, enter, Icon.NEXT)
         if not self._is_recording:
             return BarState(primary=go_on, others=(again,), quiet=repeat)
-        price = price_of_stopping(self._motion, self._visit.prosthetic_sides, can_move=not self._is_played)
+        price = price_of_stopping(self._motion, self._visit.prosthetic_joints, can_move=not self._is_played)
         if self._is_done:
             return BarState(primary=go_on, quiet=repeat, note=price or tr("Continues automatically."))
         if self._is_played and not self._plays_s:
@@ -309,7 +309,7 @@ class FreeMotionStep(Step):
         if acquisition is None:
             return
         standing = {name: rest.acc_m_s2 for name, rest in visit.rests.items()}
-        prosthetic, without = visit.prosthetic_sides, visit.without_ankle
+        prosthetic, without = visit.prosthetic_joints, visit.without_ankle
         self._hold = HintHold(prosthetic)
         if sensors.is_left_to_motion and not sensors.site_of:
             live = live_sensors(acquisition.sensors, visit.rests, sensors.status)
@@ -356,7 +356,7 @@ class FreeMotionStep(Step):
 
     def _with_enough(self) -> frozenset[Joint]:
         """The joints whose gauge shows that the motion is enough: one that is no hinge is not among them."""
-        states = judged(self._motion, self._visit.prosthetic_sides)
+        states = judged(self._motion, self._visit.prosthetic_joints)
         return frozenset(joint for joint, state in states.items() if state in CLOSED)
 
     def _joined(self, motion: FreeMotionState) -> FreeMotionState:
@@ -427,7 +427,7 @@ class FreeMotionStep(Step):
             self._left = tr("Free motion was left before a leg moved, so it is not used."), again
         else:
             what = tr("Free motion was left early. It is still used: {enough}.")
-            self._left = what.format(enough=enough_for(self._motion, self._visit.prosthetic_sides)), again
+            self._left = what.format(enough=enough_for(self._motion, self._visit.prosthetic_joints)), again
         self._visit.recordings.stop(is_kept=is_kept)
 
     # what somebody has to answer
@@ -534,7 +534,7 @@ class FreeMotionStep(Step):
         if self.is_in_doubt:
             return Asked(Hint("", phrase="swapped"))  # the banner is in its place
         if not self._is_recording:
-            prosthetic = self._visit.prosthetic_sides
+            prosthetic = self._visit.prosthetic_joints
             return Asked(recorded_hint(self._motion, prosthetic) if self._has_moved else first_hint())
         if self._is_played and not self._is_done:
             return Asked(played_hint(has_played=bool(self._plays_s)))

@@ -8,7 +8,7 @@ from datetime import date
 
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.summary.reference_bands import reference_curves
 from app.theme.current import current_theme, on_theme
@@ -19,11 +19,14 @@ from app.widgets.field import Field, NumberField
 from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
-from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.text import SEMIBOLD, Text
+from app.wizard.patient.captioned import Captioned
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
+from app.wizard.patient.prosthesis_row import ProsthesisRow
 from app.wording.patients import AIDS
 from app.wording.translation import tr
 from core.body import Side
+from core.prosthesis import NOT_STATED, stated_only
 from core.session import Patient
 
 ONE_COLUMN_BELOW = 620  # room for the form, where a row of three fields still reads well
@@ -38,7 +41,7 @@ _ACROSS, _DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBot
 
 @dataclass(frozen=True, slots=True)
 class PatientDraft:
-    """What is on the page. `without_ankle` holds the sides whose prosthetic foot has no ankle joint."""
+    """What is on the page. `without_ankle`: sides whose foot was answered to have no ankle joint, its kind unknown."""
 
     patient: Patient = field(default_factory=Patient)
     without_ankle: frozenset[Side] = frozenset()
@@ -78,9 +81,10 @@ class PatientPage(QWidget):
             tr("This side is"), [("affected", tr("Affected"), ""), ("prosthetic", tr("Prosthetic"), "")]
         )
         self.device = Field(tr("Device"), is_optional=True, most=MOST_OF_DEVICE)
+        self.prostheses = {side: ProsthesisRow(side) for side in Side}
         self.ankles = {
-            Side.LEFT: Chips(tr("Left prosthetic foot"), [("none", tr("Left foot has no ankle joint"))]),
-            Side.RIGHT: Chips(tr("Right prosthetic foot"), [("none", tr("Right foot has no ankle joint"))]),
+            Side.LEFT: Chips(tr("Left ankle joint"), [("none", tr("Left foot has no ankle joint"))]),
+            Side.RIGHT: Chips(tr("Right ankle joint"), [("none", tr("Right foot has no ankle joint"))]),
         }
         aids = [(aid, tr(words)) for aid, words in AIDS.items()]
         self.aids = Chips(tr("Aids and footwear"), aids, rivals=("shoes", "barefoot"))
@@ -116,8 +120,12 @@ class PatientPage(QWidget):
             affected_side=affected,
             prosthetic_side=prosthetic,
         )
-        asked = _prosthetic(patient)
-        return PatientDraft(patient, frozenset(side for side in asked if self.ankles[side].chosen))
+        shown = {side: self.prostheses[side].prosthesis for side in patient.prosthetic_sides}
+        if patient.prosthetic_sides == reported.prosthetic_sides:  # what is stated of another side is not shown
+            shown = {**reported.prostheses, **shown}
+        patient = replace(patient, prostheses=stated_only(shown))
+        answered = (side for side in _asked_about_ankle(patient) if self.ankles[side].chosen)
+        return PatientDraft(patient, frozenset(answered))
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -131,6 +139,7 @@ class PatientPage(QWidget):
             self.height_cm.line_edit,
             self.mass_kg.line_edit,
             *self.aids.buttons,
+            *(choice for row in self.prostheses.values() for choice in row.choices),
             *(chip for chips in self.ankles.values() for chip in chips.buttons),
             self._taken.open,
             self._last.same,
@@ -170,8 +179,9 @@ class PatientPage(QWidget):
         self.mass_kg.set_value(reported.mass_kg)
         self.device.set_text(reported.device)
         self.aids.choose(_aids_in(reported))
-        for one, chips in self.ankles.items():
-            chips.choose(["none"] if one in draft.without_ankle else [])
+        for one, row in self.prostheses.items():
+            row.show_prosthesis(reported.prostheses.get(one, NOT_STATED))
+            self.ankles[one].choose(["none"] if one in draft.without_ankle else [])
         self._follow()
 
     def show_saved(self, words: str) -> None:
@@ -198,18 +208,18 @@ class PatientPage(QWidget):
     def _build(self) -> None:
         how = tr("Only the code is required. The other entries select the reference and are printed.")
         subtitle = Text(how, size=15, tone="ink2", wraps=True)
-        self._limb_box = _Captioned(self.limb, tr("This side is"))
+        self._limb_box = Captioned(self.limb, tr("This side is"))
         ankles = QWidget()
         both = [(chips, 1) for chips in self.ankles.values()]
         self._ankle_row = lay_out(QBoxLayout(_ACROSS, ankles), *both, margins=0, spacing=16)
-        self._ankle_box = _Captioned(
+        self._ankle_box = Captioned(
             ankles,
             tr("Prosthetic foot"),
             tr("without ankle joint, the angle is called “foot relative to shank”"),
         )
-        sex = _Captioned(self.sex, tr("Sex"))
-        side = _Captioned(self.side, tr("Affected or prosthetic side"))
-        aids = _Captioned(self.aids, tr("Aids and footwear"), tr("choose all that apply"))
+        sex = Captioned(self.sex, tr("Sex"))
+        side = Captioned(self.side, tr("Affected or prosthetic side"))
+        aids = Captioned(self.aids, tr("Aids and footwear"), tr("choose all that apply"))
         self._form = Card(padding=24, spacing=16)
         self._rows = [
             self._row(self.code, side),  # the side decides what results, report and bands are about
@@ -217,7 +227,8 @@ class PatientPage(QWidget):
             self._row(sex, self.birth_year),
             self._row(self.height_cm, self.mass_kg),
             self._row(aids),
-            self._row(self._ankle_box),  # last: where it comes and goes, nothing under the pointer moves
+            *(self._row(row) for row in self.prostheses.values()),
+            self._row(self._ankle_box),  # last: where they come and go, nothing under the pointer moves
         ]
         for number, row in enumerate(self._rows):
             if number == 2:
@@ -247,18 +258,21 @@ class PatientPage(QWidget):
             segmented.chosen.connect(self._on_edited)
         for chips in (*self.ankles.values(), self.aids):
             chips.turned.connect(self._on_edited)
+        for row in self.prostheses.values():
+            row.edited.connect(self._on_edited)
         self._taken.open.clicked.connect(self._on_open_clicked)
         self._last.same.clicked.connect(self.same_set_up_pressed)
 
     def _follow(self) -> None:
-        """Ask only what follows from what is stated: no limb without a side, no ankle without a prosthesis."""
+        """Ask only what follows from what is stated: no limb without a side, no ankle beside the foot's kind."""
         draft = self.draft
         has_side = self.side.choice != "none"
         self.limb.setEnabled(has_side)
         self._limb_box.set_note("" if has_side else tr("choose a side first"))
-        asked = _prosthetic(draft.patient)
-        for side, chips in self.ankles.items():
-            chips.setVisible(side in asked)
+        asked = _asked_about_ankle(draft.patient)
+        for side, row in self.prostheses.items():
+            row.setVisible(side in draft.patient.prosthetic_sides)
+            self.ankles[side].setVisible(side in asked)
         self._ankle_box.setVisible(bool(asked))
         self._band.judge(None if draft.patient.birth_year is None else self._year - draft.patient.birth_year)
         self._fit()
@@ -272,6 +286,8 @@ class PatientPage(QWidget):
         way = _ACROSS if room >= ONE_COLUMN_BELOW else _DOWN
         for row in self._rows:
             row.setDirection(way)
+        for line in self.prostheses.values():
+            line.fit(round(scale * (room - 48)))
         self._ankle_row.setDirection(way)
         width = max(px(BAND_CARD_WIDTH), self._beside.minimumSizeHint().width())  # its button may need more
         self._beside.setMinimumWidth(0 if self._is_compact else width)
@@ -292,21 +308,6 @@ class PatientPage(QWidget):
 
     def _on_open_clicked(self) -> None:
         self.open_pressed.emit(self._taken_code)
-
-
-class _Captioned(QWidget):
-    """A control under its label, as a field has it, with a few words at the label's right."""
-
-    def __init__(self, content: QWidget, caption: str, note: str = "") -> None:
-        super().__init__()
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        self._note = Text(note, size=12, tone="ink2", wraps=True)
-        self._note.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom)
-        above = lay_out(QHBoxLayout(), Text(caption, size=14, weight=MEDIUM), (self._note, 1), spacing=8)
-        lay_out(QVBoxLayout(self), above, content, margins=0, spacing=6)
-
-    def set_note(self, note: str) -> None:
-        self._note.setText(note)
 
 
 def _line() -> QWidget:
@@ -335,8 +336,10 @@ def _sides_on_page(patient: Patient) -> tuple[str, str]:
     return patient.affected_side or "none", "affected"
 
 
-def _prosthetic(patient: Patient) -> tuple[Side, ...]:
-    return tuple(side for side in Side if patient.prosthetic_side in (side, "both"))
+def _asked_about_ankle(patient: Patient) -> tuple[Side, ...]:
+    """The sides with a prosthetic foot whose kind is not stated: its kind shows whether it has an ankle joint."""
+    worn = {side: patient.worn.get(side, NOT_STATED) for side in Side if side in patient.prosthetic_sides}
+    return tuple(side for side, one in worn.items() if one.foot is None and one.may_have_foot)
 
 
 def _aids_in(patient: Patient) -> tuple[str, ...]:

@@ -41,7 +41,7 @@ class PatientStep(Step):
         self._is_going_on = False
         self._taken_code = ""
         self._is_entered = False
-        self._shown_without: frozenset[Side] = frozenset()  # feet without an ankle joint, as the page has it
+        self._shown_without: frozenset[Side] = frozenset()  # feet answered to have no ankle joint, as the page has it
         visit.patient.read_again.connect(self._fill)
         visit.changed.connect(self._on_visit_changed)
         visit.patient.changed.connect(self._on_patient_changed)
@@ -118,7 +118,7 @@ class PatientStep(Step):
         """Fill the page with what is known of the patient; nothing that is being typed is overwritten."""
         patient = self._visit.patient
         self._shown_id = patient.stored.id if patient.stored is not None else None
-        self._shown_without = self._visit.without_ankle
+        self._shown_without = self._visit.record.limits.without_ankle
         self.page.show_draft(PatientDraft(patient.details, self._shown_without))
         self._show_saved()
 
@@ -161,7 +161,7 @@ class PatientStep(Step):
 
     def _on_visit_changed(self) -> None:
         """Show what another station entered about the feet, so that nobody answers over what was not seen."""
-        if self._is_entered and self._visit.without_ankle != self._shown_without:
+        if self._is_entered and self._visit.record.limits.without_ankle != self._shown_without:
             self._fill()
 
     def _on_patient_changed(self) -> None:

@@ -19,6 +19,7 @@ from app.system.known_columns import known_columns
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice
 from app.wording.translation import later, tr, tr_n
 from core.body import Side
+from core.prosthesis import Prosthesis
 from devices.catalogue import DRIVERS
 from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.dot.source import DotSource
@@ -176,8 +177,8 @@ def _demonstration(settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquis
     return Acquisition([DemonstrationPatient(settings)])
 
 
-def _prosthesis_user(side: Side, settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:
-    return Acquisition([ProsthesisUser(side, settings)])
+def _prosthesis_user(side: Side, fitted: Prosthesis, settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:
+    return Acquisition([ProsthesisUser(side, settings, fitted=fitted)])
 
 
 def _networks() -> Sequence[str]:

@@ -59,8 +59,8 @@ class EntryFields(QWidget):
         scaled(self._grid.setSpacing, 8)
         switches: list[QWidget] = [*self.names.values(), *self.numbers.values()]
         every: list[QWidget] = [self.parts, *self.steppers.values(), self.words, *switches]
-        for widget in every:
-            widget.setParent(self)  # what is shown without one is a window, and takes the keys
+        for one in every:
+            one.setParent(self)  # what is shown without one is a window, and takes the keys
         for before, after in pairwise(self.tab_order):
             QWidget.setTabOrder(before, after)
         self._connect()

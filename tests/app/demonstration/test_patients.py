@@ -10,6 +10,7 @@ from app.wording.translation import use_language
 from core.alignment import changed_between
 from core.body import Side
 from core.goals import GoalOf
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.timed.protocols import TimedProtocol
 from devices.simulation.fitted_prosthesis import BUILT
 from devices.simulation.walker import FreeMotion, Standing, TimedCourse, Walk
@@ -22,9 +23,9 @@ def patients() -> dict[str, SimulatedPatient]:
     return {one.details.code: one for one in simulated_patients(NOW)}
 
 
-def test_three_are_simulated_and_their_codes_say_so(patients: dict[str, SimulatedPatient]) -> None:
-    assert list(patients) == ["DEMO-KNEE", "DEMO-STROKE", "DEMO-AK"]
-    assert [len(one.visits) for one in patients.values()] == [4, 2, 1]
+def test_four_are_simulated_and_their_codes_say_so(patients: dict[str, SimulatedPatient]) -> None:
+    assert list(patients) == ["DEMO-KNEE", "DEMO-STROKE", "DEMO-AK", "DEMO-BK"]
+    assert [len(one.visits) for one in patients.values()] == [4, 2, 1, 1]
     assert all(visit.code == code for code, one in patients.items() for visit in one.visits)
 
 
@@ -86,6 +87,18 @@ def test_the_prosthesis_is_walked_as_it_was_stated_to_be_changed_from_the_alignm
     assert set_so[2].swing_flexion_deg > set_so[1].swing_flexion_deg
     assert changed_between(changes, "Alignment A", "Alignment C")
     assert visit.limits.without_ankle == {Side.LEFT}
+
+
+def test_who_wears_a_prosthesis_is_stated_to_wear_what_is_walked_with(patients: dict[str, SimulatedPatient]) -> None:
+    worn = {code: one.details.worn for code, one in patients.items() if one.details.worn}
+    assert worn == {
+        "DEMO-AK": {Side.LEFT: Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.FLUID_CONTROLLED)},
+        "DEMO-BK": {Side.RIGHT: Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)},
+    }
+    for one in patients.values():
+        for visit in one.visits:
+            side = visit.settings.prosthetic_side
+            assert one.details.worn == ({side: visit.settings.fitted} if side is not None else {})
 
 
 def test_conditions_are_words_of_the_language_on_the_screen() -> None:

@@ -21,6 +21,7 @@ from app.wizard.resuming import read_analysed, read_recordings
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import LEG_SITES, Joint, Side
 from core.parameters import KNEE, SPEED
+from core.prosthesis import JointNature
 from core.results import Analysis
 from core.session import RecordingKind, Session
 from core.timed.measures import COLUMNS
@@ -54,7 +55,12 @@ def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
 
 
 def test_patients_are_listed_with_the_first_one_first(opened: OpenedLibrary) -> None:
-    assert [one.details.code for one in opened.library.patients.search()] == ["DEMO-KNEE", "DEMO-STROKE", "DEMO-AK"]
+    assert [one.details.code for one in opened.library.patients.search()] == [
+        "DEMO-KNEE",
+        "DEMO-STROKE",
+        "DEMO-AK",
+        "DEMO-BK",
+    ]
 
 
 def test_a_visit_comes_out_of_its_journals_as_it_was_recorded_and_reported(
@@ -113,7 +119,8 @@ def test_the_whole_library_shows_what_it_is_made_to_show(opened: OpenedLibrary) 
     _knee_is_replaced(read_patient(opened, ids["DEMO-KNEE"]))
     _is_after_stroke(read_patient(opened, ids["DEMO-STROKE"]))
     _is_fitted(read_patient(opened, ids["DEMO-AK"]))
-    assert [len(found) for found in analyses.values()] == [4, 2, 1]
+    _has_own_knee(read_patient(opened, ids["DEMO-BK"]), *analyses["DEMO-BK"])
+    assert [len(found) for found in analyses.values()] == [4, 2, 1, 1]
     warned = {finding.key for found in analyses.values() for one in found for finding in one.findings}
     assert "strap_slipped" not in warned
     assert all(one.is_simulated for found in analyses.values() for one in found)
@@ -173,3 +180,16 @@ def _is_fitted(reading: PatientReading) -> None:
     assert [one.condition for one in visit.course.conditions] == ["Alignment A", "Alignment B", "Alignment C"]
     knees = [figure.found.mean for one in visit.course.conditions if (figure := one.figure(KNEE, Side.LEFT))]
     assert knees[2] - knees[1] > 5.0
+
+
+def _has_own_knee(reading: PatientReading, analysis: Analysis) -> None:
+    """One walk, all of it reported; the foot has no joint, and the knee above it is a person's."""
+    (visit,) = reading.visits(NOW)
+    assert visit.course is not None
+    assert [one.not_reported for one in visit.course.conditions] == [()]
+    calibrated = analysis.calibrations[-1].joints
+    assert calibrated[Joint.RIGHT_KNEE].nature is JointNature.OWN
+    assert not calibrated[Joint.RIGHT_KNEE].is_hinge
+    assert calibrated[Joint.RIGHT_ANKLE].nature is JointNature.RIGID
+    stated = [(one.key, one.where) for one in analysis.findings if one.key == "foot_against_shank"]
+    assert stated == [("foot_against_shank", "right_ankle")]

@@ -18,6 +18,7 @@ from app.storage.stored import ResultKind
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.results import Analysis
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.session import Patient, Recording, Session
@@ -110,6 +111,15 @@ def test_anything_that_an_analysis_is_given_makes_it_another_one(session: Sessio
         replace(session, recordings=session.recordings[::-1]),
         replace(session, patient=replace(session.patient, affected_side="right")),
         replace(session, patient=replace(session.patient, prosthetic_side="left")),
+        *(
+            replace(session, patient=replace(session.patient, prosthetic_side="left", prostheses={Side.LEFT: one}))
+            for one in (
+                Prosthesis(AmputationLevel.TRANSTIBIAL),
+                Prosthesis(AmputationLevel.TRANSFEMORAL),
+                Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.POLYCENTRIC),
+                Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.SACH),
+            )
+        ),
         replace(session, sensors={}),
         replace(session, sensors={SHANK: SensorInfo(rate_hz=100.0, rate_kind=RateKind.AVERAGED)}),
         replace(session, sensors={SHANK: SensorInfo(rate_hz=101.0, rate_kind=RateKind.INSTANTANEOUS)}),
@@ -123,7 +133,8 @@ def test_anything_that_an_analysis_is_given_makes_it_another_one(session: Sessio
     keys = [key_of(inputs_of(one)) for one in (session, *changed)]
     assert len(set(keys)) == len(keys)
     words = replace(session, notes="tired", operator="hk", surface="lawn", started="2026-11-22", software="x")
-    reported = replace(session.patient, code="P-2", height_m=1.8, device="knee")
+    not_worn = {Side.RIGHT: Prosthesis(AmputationLevel.TRANSTIBIAL)}
+    reported = replace(session.patient, code="P-2", height_m=1.8, device="knee", prostheses=not_worn)
     same = [
         replace(words, patient=reported, unknown={"mood": "good"}),
         with_walk(session, lambda walk: replace(walk, condition="AFO", note="n", started="s", unknown={"a": 1})),
@@ -145,7 +156,7 @@ def test_every_field_is_either_in_the_key_or_kept_from_the_analysis(session: Ses
     in_key = {
         Session: {"recordings", "patient", "sensors", "zero_rad", "turned_sign", "is_simulated", "findings"},
         Recording: {"name", "kind", "folder", "imu", "is_kept", "is_restrapped_before"},
-        Patient: {"affected_side", "prosthetic_side"},
+        Patient: {"affected_side", "prosthetic_side", "prostheses"},
         SensorInfo: {"rate_hz", "rate_kind"},
     }
     given = bare(session)

@@ -34,6 +34,7 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.goals import Goal, GoalOf, held, ordered, with_goal
+from core.prosthesis import NOT_STATED, AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.samples import RateKind, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 
@@ -383,6 +384,35 @@ def test_a_double_brings_its_goals(library: Library) -> None:
     kept = library.patients.create(Patient(code="P-1", goals=(knee,)))
     double = library.patients.create(Patient(code="P-2", goals=(GOAL,)))
     assert library.patients.merge(kept, double).details.goals == ordered((knee, GOAL))
+
+
+TRANSTIBIAL = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
+
+
+def test_what_is_stated_of_a_prosthesis_is_stored_corrected_and_taken_back(library: Library) -> None:
+    made = library.patients.create(
+        Patient(code="P-3", prosthetic_side="left", prostheses={Side.LEFT: TRANSTIBIAL, Side.RIGHT: NOT_STATED})
+    )
+    assert made.details.prostheses == {Side.LEFT: TRANSTIBIAL}
+    other = {Side.LEFT: Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.MICROPROCESSOR)}
+    corrected = library.patients.change(made, replace(made.details, prostheses=other))
+    assert library.patients.get(made.id).details.prostheses == other
+    (correction,) = library.corrections.of_patient(made.id)
+    assert [change.field for change in correction.changes] == ["prostheses"]
+    library.corrections.undo(correction.id)
+    again = library.patients.get(made.id)
+    assert again.details == made.details
+    assert again.version > corrected.version
+
+
+def test_a_double_brings_what_was_stated_of_its_prosthesis_where_the_other_states_nothing(library: Library) -> None:
+    transfemoral = Prosthesis(AmputationLevel.TRANSFEMORAL)
+    kept = library.patients.create(Patient(code="P-1", prosthetic_side="both", prostheses={Side.LEFT: transfemoral}))
+    double = library.patients.create(
+        Patient(code="P-2", prosthetic_side="both", prostheses={Side.LEFT: TRANSTIBIAL, Side.RIGHT: TRANSTIBIAL})
+    )
+    merged = library.patients.merge(kept, double)
+    assert merged.details.prostheses == {Side.LEFT: transfemoral, Side.RIGHT: TRANSTIBIAL}
 
 
 def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPatient, visit: StoredSession) -> None:

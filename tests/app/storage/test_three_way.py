@@ -19,6 +19,7 @@ from app.storage.three_way import Values, rebased, three_way
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf, with_goal
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 
@@ -98,13 +99,32 @@ def test_a_side_is_one_word_of_two_columns() -> None:
     assert three_way(base, mine, theirs).contested == ("sides",)
 
 
+WORN = {
+    Side.LEFT: Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.LOCKED),
+    Side.RIGHT: Prosthesis(foot=FootKind.SACH),
+}
+
+
+def test_two_prostheses_are_two_fields_and_all_of_one_is_one() -> None:
+    transtibial = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.SACH)
+    base, mine, theirs = (
+        patient_fields(Patient(prosthetic_side="both", prostheses=worn))
+        for worn in ({}, {Side.LEFT: transtibial}, {Side.RIGHT: transtibial})
+    )
+    found = three_way(base, mine, theirs)
+    assert found.contested == ()
+    assert with_patient_fields(Patient(), found.merged).prostheses == {Side.LEFT: transtibial, Side.RIGHT: transtibial}
+    other = patient_fields(Patient(prosthetic_side="both", prostheses={Side.LEFT: Prosthesis(foot=FootKind.SACH)}))
+    assert three_way(base, mine, other).contested == ("prosthesis.left",)
+
+
 def test_fields_and_back_are_the_same() -> None:
     goals: tuple[Goal, ...] = (
         Goal("speed_m_s", GoalOf.WALK, 1.2, DAY, "hk"),
         Goal("stance_percent", GoalOf.BETWEEN, 2.0, DAY, is_at_most=True),
     )
     goals = with_goal(goals, Goal("speed_m_s", GoalOf.WALK, 1.3, DAY, "bb"))
-    patient = Patient("P-1", 1970, "female", 1.7, 60.0, "knee", "stick", "none", "both", {"x": 1}, goals)
+    patient = Patient("P-1", 1970, "female", 1.7, 60.0, "knee", "stick", "none", "both", {"x": 1}, goals, WORN)
     assert with_patient_fields(Patient(unknown={"x": 1}), patient_fields(patient)) == patient
     reported = Session((), surface="grass", zero_rad={Joint.LEFT_KNEE: 0.0}, turned_sign={Joint.LEFT_ANKLE: -1})
     limits = Limits(frozenset({Side.LEFT}), cannot_stand=True)

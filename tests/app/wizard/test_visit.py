@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 import numpy as np
@@ -18,6 +19,7 @@ from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, Joint, Side, Site
+from core.prosthesis import AmputationLevel, FootKind, Prosthesis
 from core.session import Patient, RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
@@ -145,6 +147,27 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     patient.enter()
     assert patient.page.draft.without_ankle == {Side.LEFT, Side.RIGHT}
     again.finish()
+
+
+@pytest.mark.parametrize(
+    ("worn_left", "joints", "without"),
+    [
+        ({}, {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}, {Side.LEFT}),
+        (Prosthesis(AmputationLevel.TRANSFEMORAL), {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}, {Side.LEFT}),
+        (Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.SACH), {Joint.LEFT_ANKLE}, {Side.LEFT}),
+        (Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.SINGLE_AXIS), {Joint.LEFT_ANKLE}, set()),
+        (Prosthesis(AmputationLevel.PARTIAL_FOOT), set(), {Side.LEFT}),
+    ],
+)
+def test_the_prosthesis_has_the_joints_that_its_level_leaves_it_and_its_foot_is_stated_before_it_is_answered(
+    visit: Visit, worn_left: Any, joints: set[Joint], without: set[Side]
+) -> None:
+    worn = {Side.LEFT: worn_left} if worn_left else {}
+    visit.patient.edit(Patient(code="DEMO-7", prosthetic_side="left", prostheses=worn))
+    visit.record.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
+    assert visit.prosthetic_sides == {Side.LEFT}
+    assert visit.prosthetic_joints == joints
+    assert visit.without_ankle == without
 
 
 def test_who_judged_a_recovered_walk_is_noted_once_for_all(

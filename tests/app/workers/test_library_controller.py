@@ -340,6 +340,7 @@ def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothi
         ("DEMO-KNEE", 0),
         ("DEMO-STROKE", 0),
         ("DEMO-AK", 0),
+        ("DEMO-BK", 0),
     ]
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()

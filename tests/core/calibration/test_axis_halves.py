@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
+from core.prosthesis import AmputationLevel, FootKind, Prosthesis
 from core.results import Method, RecordingAnalysis
+from core.session import Patient
 from core.verdicts.model import Verdict
 from devices.simulation.walker import FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings
 from tests.benchmarks.axis_halves import HARDLY_MOVING, JUMP_DEG, WALK, of_seed
@@ -60,6 +62,37 @@ def test_free_motion_is_compared_with_the_walk(method: Method) -> None:
     stiff = replace(WALK_AFTER_FREE_MOTION[-1], manner=Manner.STIFF)
     walk = walk_of(replace(SOUND, recordings=(*WALK_AFTER_FREE_MOTION[:-1], stiff)), method)
     assert [gates_of(walk, joint) for joint in walk.axis_halves] == [[], ["axis_motions"]]
+
+
+def test_a_foot_without_a_joint_which_hands_cannot_bend_is_compared_between_halves_of_the_walk() -> None:
+    """Of the side alone its axis in free motion, which is nothing's, took its ankle out of the report."""
+    springy = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
+    made = session_of(
+        replace(
+            SOUND,
+            tissue=Tissue.SOFT,
+            seed=101,
+            prosthetic_side=Side.LEFT,
+            fitted=springy,
+            recordings=WALK_AFTER_FREE_MOTION,
+        )
+    )
+    stated, alone = (
+        analyse(replace(made, patient=patient)).recordings[-1]
+        for patient in (made.patient, Patient(prosthetic_side="left"))
+    )
+    assert made.patient.worn == {Side.LEFT: springy}
+    assert stated.axis_halves[Joint.LEFT_KNEE].is_free_motion
+    assert not stated.axis_halves[ANKLE].is_free_motion
+    assert (gates_of(alone, ANKLE), gates_of(stated, ANKLE)) == (["axis_motions"], [])
+
+
+def test_a_foot_stated_to_have_no_joint_whose_axes_jump_is_not_reported_either() -> None:
+    rigid = {Side.LEFT: Prosthesis(foot=FootKind.SACH)}
+    free = session_of(replace(STIFF, recordings=(Standing(), FreeMotion(), *STIFF.recordings[1:])))
+    for made in (session_of(STIFF), free):
+        walk = analyse(replace(made, patient=Patient(prosthetic_side="left", prostheses=rigid))).recordings[-1]
+        assert gates_of(walk, ANKLE) == ["axis_halves"]
 
 
 def test_where_a_half_holds_too_little_movement_nothing_is_compared() -> None:

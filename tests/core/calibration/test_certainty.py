@@ -15,6 +15,7 @@ from core.calibration.certainty import (
     looseness,
     sandwich_covariance,
 )
+from core.prosthesis import JointNature
 from core.samples import FloatArray
 from core.signal.datasets import gather
 from core.signal.rotations import joint_frame
@@ -45,22 +46,25 @@ def test_the_weaker_axis_and_direction_count_and_the_floor_is_added() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rate", "distance_deg", "is_knee", "is_prosthetic", "expected_deg"),
+    ("rate", "distance_deg", "is_knee", "nature", "expected_deg"),
     [
-        (0.0, 60.0, True, False, 1.1),
-        (1.0, 30.0, True, False, 4.1),
-        (1.0, 30.0, True, True, 4.1),
-        (0.0, 0.0, False, False, 0.3),
-        (0.5, 0.0, False, False, 2.3),
-        (0.5, 20.0, False, False, np.hypot(2.3, 2.6)),
-        (0.5, 20.0, False, True, 0.75),
+        (0.0, 60.0, True, JointNature.NOT_STATED, 1.1),
+        (1.0, 30.0, True, JointNature.NOT_STATED, 4.1),
+        (1.0, 30.0, True, JointNature.PROSTHETIC, 4.1),
+        (1.0, 30.0, True, JointNature.OWN, 4.1),
+        (0.0, 0.0, False, JointNature.NOT_STATED, 0.3),
+        (0.5, 0.0, False, JointNature.NOT_STATED, 2.3),
+        (0.5, 20.0, False, JointNature.NOT_STATED, np.hypot(2.3, 2.6)),
+        (0.5, 20.0, False, JointNature.OWN, np.hypot(2.3, 2.6)),
+        (0.5, 20.0, False, JointNature.PROSTHETIC, 0.75),
+        (0.5, 20.0, False, JointNature.RIGID, 0.75),
     ],
 )
 def test_an_angle_s_spread_goes_by_what_is_declared(
-    rate: float, distance_deg: float, is_knee: bool, is_prosthetic: bool, expected_deg: float
+    rate: float, distance_deg: float, is_knee: bool, nature: JointNature, expected_deg: float
 ) -> None:
     distance = np.deg2rad([distance_deg])
-    found = angle_sd_rad(distance, rate, 1.0, is_knee, is_hinge=False, is_prosthetic=is_prosthetic)
+    found = angle_sd_rad(distance, rate, 1.0, is_knee, is_hinge=False, nature=nature)
     assert np.rad2deg(found) == pytest.approx(expected_deg)
 
 
@@ -75,11 +79,24 @@ def test_on_a_hinge_only_the_range_counts() -> None:
 def test_a_hinge_that_is_not_declared_and_not_bare_may_be_a_person_s_joint(rate: float, ringing: float) -> None:
     angles = np.deg2rad([0.0, 20.0])
     doubted, declared = (
-        angle_sd_rad(angles, rate, 0.1, is_knee=False, is_hinge=True, is_prosthetic=reported, ringing_rad_s=ringing)
-        for reported in (False, True)
+        angle_sd_rad(angles, rate, 0.1, is_knee=False, is_hinge=True, nature=nature, ringing_rad_s=ringing)
+        for nature in (JointNature.NOT_STATED, JointNature.PROSTHETIC)
     )
     assert np.rad2deg(doubted) == pytest.approx([0.9, np.hypot(0.3 + 4.0 * rate, 2.6)])
     assert np.rad2deg(declared) == pytest.approx([0.1, 0.1])
+
+
+def test_what_is_stated_to_be_the_patient_s_or_no_joint_at_all_is_no_hinge_however_it_looks() -> None:
+    angles = np.deg2rad([0.0, 20.0])
+    found = {
+        (nature, is_knee): np.rad2deg(angle_sd_rad(angles, 0.01, 0.1, is_knee, is_hinge=True, nature=nature))
+        for nature in JointNature
+        for is_knee in (True, False)
+    }
+    assert found[JointNature.OWN, True] == pytest.approx([1.13, 1.13])
+    assert found[JointNature.OWN, False] == pytest.approx([0.9, np.hypot(0.34, 2.6)])
+    assert found[JointNature.RIGID, False] == pytest.approx([0.211, 0.211])
+    assert found[JointNature.NOT_STATED, True] == pytest.approx([0.1, 0.1])
 
 
 def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:

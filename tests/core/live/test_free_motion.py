@@ -99,7 +99,7 @@ def test_a_leg_held_still_stays_open_and_is_asked_for() -> None:
 
 
 def test_a_foot_without_ankle_joint_is_not_asked_for(circling: SimulatedSession) -> None:
-    motion = LiveFreeMotion(sensors_of(circling), frozenset({Side.LEFT}), without_ankle=frozenset({Side.LEFT}))
+    motion = LiveFreeMotion(sensors_of(circling), frozenset({Joint.LEFT_KNEE}), without_ankle=frozenset({Side.LEFT}))
     assert set(motion.update({}).joints) == {Joint.LEFT_KNEE}
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.samples import RateKind, SensorInfo
 from core.session import Patient
 from core.timed.protocols import PlannedTest, TimedProtocol
@@ -39,6 +40,66 @@ def test_goals_are_read_and_written_and_what_is_none_stays_as_it_was() -> None:
     assert kept.patient.goals == ()
     assert tomllib.loads(render(kept, plans))["patient"]["goals"] == [GOAL | {"measure": "hop_height_m"}]
     assert [finding.numbers["name"] for finding in unknown_keys(kept)] == ["goals"]
+
+
+WORN = """\
+format = "gaitwright-session/1"
+[patient]
+prosthetic_side = "both"
+[patient.prosthesis.left]
+level = "transfemoral"
+knee = "polycentric"
+foot = "sach"
+[patient.prosthesis.right]
+level = "transtibial"
+[[recordings]]
+name = "walk 1"
+kind = "walking"
+folder = "walk_1"
+"""
+
+
+def test_each_side_s_prosthesis_is_read_and_written() -> None:
+    session, plans = parse(WORN)
+    assert session.patient.worn == {
+        Side.LEFT: Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.POLYCENTRIC, FootKind.SACH),
+        Side.RIGHT: Prosthesis(AmputationLevel.TRANSTIBIAL),
+    }
+    assert unknown_keys(session) == ()
+    assert tomllib.loads(render(session, plans))["patient"] == tomllib.loads(WORN)["patient"]
+
+
+@pytest.mark.parametrize(
+    "later",
+    [
+        WORN.replace('"sach"', '"magnetic"'),
+        WORN.replace('"transtibial"', '"transtibial"\nliner = "gel"'),
+        WORN.replace("[patient.prosthesis.left]", "[patient.prosthesis.middle]"),
+        WORN.replace('"transfemoral"', '"transpelvic"'),
+    ],
+)
+def test_what_a_later_version_states_of_a_prosthesis_is_noticed_and_stays(later: str) -> None:
+    session, plans = parse(later)
+    assert [(finding.where, finding.numbers["name"]) for finding in unknown_keys(session)] == [
+        ("patient", "prosthesis")
+    ]
+    assert tomllib.loads(render(session, plans))["patient"] == tomllib.loads(later)["patient"]
+    assert parse(render(session, plans)) == (session, plans)
+    assert session.patient.worn[Side.RIGHT] == Prosthesis(AmputationLevel.TRANSTIBIAL)
+
+
+@pytest.mark.parametrize("other", ['prosthesis = "C-Leg"', "prosthesis = 3", 'prosthesis = ["left"]'])
+def test_what_another_program_calls_a_prosthesis_is_unknown_and_stays(other: str) -> None:
+    session, plans = parse(f"{TOML}[patient]\n{other}\n")
+    assert session.patient.prostheses == {}
+    assert list(session.patient.unknown) == ["prosthesis"]
+    assert parse(render(session, plans)) == (session, plans)
+
+
+def test_a_session_that_states_no_prosthesis_is_written_as_before() -> None:
+    session, plans = parse(f'{TOML}[patient]\nprosthetic_side = "left"\n')
+    assert (session.patient.prostheses, session.patient.unknown) == ({}, {})
+    assert tomllib.loads(render(session, plans))["patient"] == {"prosthetic_side": "left"}
 
 
 def test_every_key_of_the_format_is_read() -> None:

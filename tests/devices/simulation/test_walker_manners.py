@@ -18,7 +18,7 @@ STEP_S = 0.002
 def walked(manner: Manner, speed_m_s: float = 0.6, strides: int = 4) -> LegMotion:
     walk = Walk(speed_m_s=speed_m_s, strides=strides, manner=manner)
     time_s = np.arange(-0.25, 16.0, STEP_S)
-    plan = plan_walk(walk, time_s, Side.LEFT, None, np.random.default_rng(1))
+    plan = plan_walk(walk, time_s, Side.LEFT, {}, np.random.default_rng(1))
     leg = make_leg(WalkerSettings(), Side.LEFT)
     return walk_leg(leg, plan, time_s, np.zeros((len(time_s), 2)), np.random.default_rng(2))
 

@@ -39,7 +39,7 @@ def walking_leg(settings: WalkerSettings) -> tuple[Leg, LegMotion]:
     rng = np.random.default_rng(0)
     time_s = np.arange(-250, 6000) / 1000.0
     walk = Walk(strides=3)
-    plan = plan_walk(walk, time_s, leg.side, None, rng)
+    plan = plan_walk(walk, time_s, leg.side, {}, rng)
     return leg, walk_leg(leg, plan, time_s, np.zeros((len(time_s), 2)), rng)
 
 

@@ -17,6 +17,7 @@ from app.summary.facts import Facts
 from app.summary.joint_panels import thin_part
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
+from core.prosthesis import AmputationLevel, FootKind, Prosthesis
 from core.session import Patient
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.reports.patient.test_what_stands_out import with_more
@@ -159,6 +160,23 @@ def test_who_was_measured_and_how_is_beside_the_code(demo: ReportRequest) -> Non
     visit = AnalysedVisit(known, demo.visit.analysis)
     stated = page(replace(demo, visit=visit))["who"]
     assert plain(stated) == "Woman · born 1961 · affected side: left · left knee replaced · shoes"
+
+
+def test_a_stated_prosthesis_takes_the_place_of_its_side_beside_the_code(demo: ReportRequest) -> None:
+    session = demo.visit.session
+    transtibial = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
+    alone = Patient(code="P-1", prosthetic_side="left", device="own socket")
+    for patient, words in (
+        (alone, "prosthetic side: left"),
+        (replace(alone, prostheses={Side.LEFT: transtibial}), "Transtibial prosthesis left, energy-storing foot"),
+        (
+            replace(alone, prosthetic_side="both", prostheses={Side.LEFT: transtibial}),
+            "Transtibial prosthesis left, energy-storing foot · Prosthesis right",
+        ),
+    ):
+        visit = AnalysedVisit(replace(session, patient=patient), demo.visit.analysis)
+        stated = page(replace(demo, visit=visit))["who"]
+        assert plain(stated).startswith(f"{words} · own socket")
 
 
 def test_no_letter_of_page_one_is_smaller_than_nine_points(demo: ReportRequest) -> None:

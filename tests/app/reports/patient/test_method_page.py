@@ -11,6 +11,7 @@ from app.reports.patient.how_measured import how_measured
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Side, Site
 from core.findings import Finding, Severity
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.results import AxisSource, Calibration, Method
 from core.samples import RateKind, SensorInfo
 from core.verdicts.sigmas import using
@@ -82,6 +83,26 @@ def test_what_a_sensor_states_of_itself_is_one_short_line(demo: ReportRequest) -
     words = reported["Sensors"].replace("\u200b", "")
     assert words.startswith("6 × W W W")
     assert 20 < words.index("…") < 45
+
+
+def test_what_each_joint_of_a_prosthetic_side_is_taken_for_is_stated_with_its_prosthesis(demo: ReportRequest) -> None:
+    assert "Prosthesis" not in stated(demo)
+    for worn, words in (
+        (
+            Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.SACH),
+            "Transtibial prosthesis left, SACH foot. Left knee: the patient's own, so its uncertainty is that of a "
+            "living joint. Left ankle: a foot without ankle joint; the angle is the foot relative to the shank.",
+        ),
+        (
+            Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.LOCKED),
+            "Transfemoral prosthesis left, manual-lock knee. Left knee: a joint of the prosthesis. "
+            "Left ankle: a joint of the prosthesis.",
+        ),
+        (Prosthesis(foot=FootKind.MULTI_AXIAL), "Prosthesis left, multi-axial foot."),
+    ):
+        analysis = replace(demo.visit.analysis, prostheses={Side.LEFT: worn})
+        request = replace(demo, visit=AnalysedVisit(demo.visit.session, analysis))
+        assert stated(request)["Prosthesis"] == words
 
 
 def test_what_was_noticed_changes_what_is_stated(demo: ReportRequest) -> None:

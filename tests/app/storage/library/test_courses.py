@@ -11,6 +11,7 @@ from app.storage.stored import Limits, StoredSession
 from app.system.progress import nobody
 from app.wizard.resuming import current_course_key, read_analysed
 from core.body import Joint, Side, Site
+from core.prosthesis import AmputationLevel, Prosthesis
 from core.session import Patient, Session
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
@@ -81,8 +82,18 @@ def other_side(opened: OpenedLibrary, visit: StoredSession) -> None:
     opened.library.patients.change(patient, replace(patient.details, affected_side="right"))
 
 
+def other_level(opened: OpenedLibrary, visit: StoredSession) -> None:
+    patient = opened.library.patients.get(visit.patient_id)
+    worn = {Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL)}
+    opened.library.patients.change(patient, replace(patient.details, prosthetic_side="left"))
+    before = current_course_key(opened.library.sessions.get(visit.id))
+    patient = opened.library.patients.get(visit.patient_id)
+    opened.library.patients.change(patient, replace(patient.details, prostheses=worn))
+    assert current_course_key(opened.library.sessions.get(visit.id)) != before
+
+
 @pytest.mark.parametrize(
-    "correct", [relabelled, left_out, not_kept, swapped, turned, zeroed, without_ankle, other_side]
+    "correct", [relabelled, left_out, not_kept, swapped, turned, zeroed, without_ankle, other_side, other_level]
 )
 def test_what_was_found_no_longer_holds_once_something_is_put_right(
     opened: OpenedLibrary, visit: StoredSession, correct: Callable[[OpenedLibrary, StoredSession], None]

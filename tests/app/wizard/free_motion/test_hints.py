@@ -89,9 +89,19 @@ def test_a_hint_names_side_and_limb_in_plain_words() -> None:
 
 
 def test_on_a_prosthetic_side_the_therapist_moves_the_limb() -> None:
-    prosthetic = frozenset({Side.LEFT})
+    prosthetic = frozenset({Joint.LEFT_KNEE, Joint.LEFT_ANKLE})
     assert hint_for(LEFT_LEG, prosthetic).how == "The therapist moves the limb. Reverse direction from time to time."
     assert hint_for(RIGHT_KNEE, prosthetic) == hint_for(RIGHT_KNEE)
+
+
+def test_above_a_transtibial_prosthesis_the_patient_moves_the_limb_and_the_therapist_the_foot() -> None:
+    prosthetic = frozenset({Joint.LEFT_ANKLE})
+    assert hint_for(LEFT_LEG, prosthetic) == hint_for(LEFT_LEG)
+    thigh = Missing(Site.LEFT_THIGH, Movement.CIRCLE)
+    assert hint_for(thigh, prosthetic) == hint_for(thigh)
+    foot = Missing(Site.LEFT_FOOT, Movement.BEND)
+    assert hint_for(foot, prosthetic).how == "The therapist moves the limb."
+    assert hint_for(foot).how != "The therapist moves the limb."
 
 
 def test_nothing_is_asked_of_one_leg_before_anything_moved() -> None:
@@ -122,7 +132,7 @@ def test_a_hint_goes_at_once_when_its_joint_is_settled(is_closed: bool, is_plate
 
 ENOUGH = state(0.4, 4, None, is_closed=True, axis_sd_with_floor_rad=float(np.deg2rad(0.5)))
 LOOSE = replace(ENOUGH, axis_sd_with_floor_rad=float(np.deg2rad(6.0)))
-PROSTHETIC = frozenset({Side.LEFT})
+PROSTHETIC = frozenset({Joint.LEFT_KNEE})
 
 
 def test_at_the_end_it_states_whether_the_motion_is_enough_or_all_only_as_good_as_they_get() -> None:
@@ -151,13 +161,13 @@ def test_a_joint_that_is_no_hinge_is_stated_in_place_of_enough_motion() -> None:
     assert stated.sentence == "Left knee: not a hinge"
     assert stated.how == "The angle is the rotation about the main axis. Walking follows automatically."
     assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: not a hinge"
-    assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: not hinges"
+    assert last_hint(motion(both), frozenset(LEG_JOINTS)).sentence == "2 joints: not hinges"
     assert last_hint(motion(one)).sentence == "Enough movement"  # of a living knee none is expected
     assert last_hint(motion(all_four), PROSTHETIC).sentence == "Enough movement"
 
 
 def test_the_rail_states_which_joints_have_enough_motion_and_an_ankle_by_its_centre() -> None:
-    far, none = state(11, 34), frozenset[Side]()
+    far, none = state(11, 34), frozenset[Joint]()
     some = motion({Joint.LEFT_KNEE: ENOUGH, Joint.RIGHT_KNEE: far, Joint.LEFT_ANKLE: ENOUGH, Joint.RIGHT_ANKLE: ENOUGH})
     assert enough_for(some, none) == "enough movement for 1 of 2 knees, 2 of 2 ankle centres"
     assert enough_for(motion(dict.fromkeys(LEG_JOINTS, ENOUGH)), none) == "enough movement"
@@ -230,7 +240,7 @@ def test_a_replayed_patient_who_has_ended_is_not_asked_to_move() -> None:
 
 
 def test_of_a_prosthesis_more_is_required() -> None:
-    stated = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
+    stated = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Joint.LEFT_KNEE}))
     assert stated.startswith("Left knee: axis uncertainty 1.2°, limit 0.5°.")
 
 

@@ -21,6 +21,7 @@ from app.wizard.worn_corrections import opposite
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
+from core.prosthesis import AmputationLevel, FootKind, Prosthesis
 from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
@@ -252,6 +253,30 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     assert step.note == "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
     assert step.state is StepState.ATTENTION
     assert Sound.READY not in received
+
+
+def test_the_knee_above_a_transtibial_prosthesis_is_none_that_has_to_be_a_hinge(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    """Of the side alone it was required like a mechanical one, and then said to be none."""
+    below = {Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)}
+    visit.patient.edit(replace(visit.patient.details, prosthetic_side="left", prostheses=below))
+    step.enter()
+    assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")
+    ticks(qtbot, step, lambda: step._estimator is not None)
+    closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
+    del closed[Joint.LEFT_ANKLE]
+    loose = replace(closed[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
+    show_message(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
+    left, right = step.page.gauges[Joint.LEFT_KNEE], step.page.gauges[Joint.RIGHT_KNEE]
+    ticks(qtbot, step, lambda: left.face.axis is not None and left.face.axis.figure == "3.8")
+    assert left.face.axis is not None
+    assert right.face.axis is not None
+    assert left.face.axis.required == right.face.axis.required == "1.5°"
+    show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+        ticks(qtbot, step, lambda: left.face.state is GaugeState.ENOUGH)
+    assert step.note == "enough movement"
 
 
 def test_a_free_motion_that_holds_is_not_recorded_again_unasked(

@@ -1,5 +1,6 @@
 """The page of the patient: what is typed comes out as it is, and what is not typed stays as it was."""
 
+from dataclasses import replace
 from datetime import date
 
 import pytest
@@ -8,9 +9,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit
 from pytestqt.qtbot import QtBot
 
+from app.theme.current import set_scale
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
+from app.wording.translation import use_language
 from core.body import Side
+from core.prosthesis import AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.session import Patient
 
 KNOWN = Patient(
@@ -86,6 +90,124 @@ def test_a_prosthetic_side_is_asked_about_its_ankle(page: PatientPage, edits: li
     assert edits[-1].without_ankle == {Side.RIGHT}
     page.limb.segments[0].click()
     assert edits[-1] == PatientDraft(Patient(affected_side="right", prosthetic_side="none"))
+
+
+TRANSTIBIAL = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
+TRANSFEMORAL = Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.POLYCENTRIC)
+
+
+@pytest.mark.parametrize(
+    "prostheses",
+    [
+        {Side.LEFT: TRANSTIBIAL},
+        {Side.LEFT: TRANSFEMORAL},
+        {Side.LEFT: Prosthesis(AmputationLevel.PARTIAL_FOOT)},
+        {Side.LEFT: Prosthesis(foot=FootKind.SACH), Side.RIGHT: TRANSFEMORAL},  # the right one is not worn
+    ],
+)
+def test_what_is_stated_of_a_prosthesis_comes_out_as_shown(
+    page: PatientPage, edits: list[PatientDraft], prostheses: dict[Side, Prosthesis]
+) -> None:
+    draft = PatientDraft(replace(KNOWN, prostheses=prostheses))
+    page.show_draft(draft)
+    assert page.draft == draft
+    assert edits == []
+
+
+def test_a_prosthesis_is_stated_by_keys_alone(page: PatientPage, edits: list[PatientDraft]) -> None:
+    page.show_draft(PatientDraft(replace(KNOWN, prosthetic_side="left")))
+    level, knee, foot = page.prostheses[Side.LEFT].choices
+    assert [one.isVisible() for one in (level, knee, foot)] == [True, False, True]
+    assert [one in page.tab_order for one in (level, knee, foot)] == [True, True, True]
+    page.aids.buttons[0].setFocus()
+    QTest.keyClick(page.aids.buttons[0], Qt.Key.Key_Tab)
+    assert level.hasFocus()
+    for _ in range(5):
+        QTest.keyClick(level, Qt.Key.Key_Down)
+    assert edits[-1].patient.worn == {Side.LEFT: Prosthesis(AmputationLevel.TRANSFEMORAL)}
+    QTest.keyClick(level, Qt.Key.Key_Tab)
+    assert knee.hasFocus()
+    QTest.keyClick(knee, Qt.Key.Key_End)
+    assert edits[-1].patient.worn == {Side.LEFT: Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.MICROPROCESSOR)}
+    QTest.keyClick(level, Qt.Key.Key_Up)
+    QTest.keyClick(level, Qt.Key.Key_Up)
+    assert edits[-1].patient.worn == {Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL)}
+    assert not knee.isVisible()
+    QTest.keyClick(level, Qt.Key.Key_Down)
+    knee_again = Prosthesis(AmputationLevel.KNEE_DISARTICULATION, KneeKind.MICROPROCESSOR)
+    assert edits[-1].patient.worn == {Side.LEFT: knee_again}, "a level chosen by mistake costs nothing"
+    QTest.keyClick(foot, Qt.Key.Key_Down)
+    assert edits[-1].patient.worn == {Side.LEFT: replace(knee_again, foot=FootKind.SACH)}
+    QTest.keyClick(level, Qt.Key.Key_Home)
+    QTest.keyClick(foot, Qt.Key.Key_Home)
+    assert edits[-1].patient.prostheses == {}
+
+
+def test_only_a_foot_of_no_stated_kind_is_asked_about_its_ankle(page: PatientPage, edits: list[PatientDraft]) -> None:
+    page.show_draft(PatientDraft(KNOWN, frozenset({Side.LEFT})))
+    level, _, foot = page.prostheses[Side.LEFT].choices
+    assert page.ankles[Side.LEFT].isVisible()
+    assert words_of(page).isdisjoint({RELATIVE})
+    QTest.keyClick(foot, Qt.Key.Key_Down)
+    assert not page.ankles[Side.LEFT].isVisible()
+    assert edits[-1].without_ankle == set(), "its kind is asked, not what was answered before"
+    assert RELATIVE in words_of(page)
+    QTest.keyClick(foot, Qt.Key.Key_Down)  # single-axis
+    assert words_of(page).isdisjoint({RELATIVE})
+    QTest.keyClick(foot, Qt.Key.Key_Home)
+    assert page.ankles[Side.LEFT].isVisible()
+    QTest.keyClick(level, Qt.Key.Key_Down)  # a part of the foot, whose ankle is left
+    assert not page.ankles[Side.LEFT].isVisible()
+    assert not foot.isVisible()
+
+
+def test_each_prosthetic_side_has_its_line_and_another_none(page: PatientPage) -> None:
+    for side, shown in (("left", [Side.LEFT]), ("right", [Side.RIGHT]), ("both", [*Side]), ("none", [])):
+        page.show_draft(PatientDraft(replace(KNOWN, prosthetic_side=side)))
+        assert [one for one in Side if page.prostheses[one].isVisible()] == shown
+
+
+def test_another_side_takes_what_was_stated_of_the_one_before_from_the_patient(
+    page: PatientPage, edits: list[PatientDraft]
+) -> None:
+    page.show_draft(PatientDraft(replace(KNOWN, prostheses={Side.LEFT: TRANSTIBIAL})))
+    page.side.segments[2].click()
+    assert edits[-1].patient.prostheses == {}
+    page.side.segments[1].click()
+    assert edits[-1].patient.prostheses == {Side.LEFT: TRANSTIBIAL}
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_no_choice_of_a_prosthesis_is_cut(qtbot: QtBot, language: str, scale: float) -> None:
+    use_language(language)
+    set_scale(scale)
+    try:
+        page = PatientPage(today=date(2026, 11, 21))
+        qtbot.addWidget(page)
+        page.resize(1064, 672)
+        page.set_compact(scale > 1)
+        longest = Prosthesis(
+            AmputationLevel.KNEE_DISARTICULATION, KneeKind.FLUID_CONTROLLED, FootKind.MICROPROCESSOR_ANKLE
+        )
+        syme = Prosthesis(AmputationLevel.ANKLE_DISARTICULATION, foot=FootKind.MICROPROCESSOR_ANKLE)
+        worn = {Side.LEFT: longest, Side.RIGHT: syme}
+        page.show_draft(PatientDraft(replace(KNOWN, prosthetic_side="both", prostheses=worn)))
+        page.show()
+        qtbot.wait(50)
+        choices = [one for row in page.prostheses.values() for one in row.choices if one.isVisible()]
+        assert len(choices) == 5
+        assert [one.currentText() for one in choices if one.is_cut] == []
+        assert all(one.mapTo(page, QPoint(one.width(), 0)).x() <= page.width() for one in choices)
+    finally:
+        use_language("en")
+
+
+RELATIVE = "Without ankle joint, the angle is called “foot relative to shank”."
+
+
+def words_of(page: PatientPage) -> set[str]:
+    return {label.text() for label in page.findChildren(QLabel) if label.isVisible()}
 
 
 def test_where_the_prosthetic_foot_is_asked_about_nothing_else_moves_down(page: PatientPage, qtbot: QtBot) -> None:

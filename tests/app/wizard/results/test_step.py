@@ -26,6 +26,7 @@ from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, Joint, Side
 from core.gait.chosen_strides import left_out_by_hand
+from core.prosthesis import AmputationLevel, JointNature, Prosthesis
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind, Session
@@ -246,6 +247,33 @@ def test_swapped_sides_are_read_again_and_swapped_back(qtbot: QtBot, visit: Visi
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.undo()
     np.testing.assert_allclose(np.nanmax(angle_of(visit, Joint.LEFT_KNEE)), np.nanmax(left), atol=0.02)
+
+
+def test_what_is_stated_of_the_legs_afterwards_is_in_the_results_when_they_are_looked_at_again(
+    qtbot: QtBot, visit: Visit, step: ResultsStep
+) -> None:
+    def nature() -> JointNature:
+        analysis = visit.evaluation.analysis
+        assert analysis is not None
+        return analysis.calibrations[-1].joints[Joint.LEFT_KNEE].nature
+
+    computed: list[object] = []
+    visit.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
+    assert nature() is JointNature.NOT_STATED
+    for change, found in (
+        ({"prosthetic_side": "left"}, JointNature.PROSTHETIC),
+        ({"prostheses": {Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL)}}, JointNature.OWN),
+    ):
+        visit.patient.edit(replace(visit.patient.details, **change))
+        step.leave()
+        with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+            step.enter()
+        assert nature() is found
+    assert len(computed) == 2
+    visit.patient.edit(replace(visit.patient.details, device="socket"))
+    step.leave()
+    step.enter()
+    assert not visit.evaluation.is_busy
 
 
 def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a_restart(

@@ -3,6 +3,7 @@
 import re
 import threading
 import time
+from typing import NoReturn
 
 import pytest
 from pytestqt.qtbot import QtBot
@@ -13,6 +14,8 @@ from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, WITH_PELVIS, Sourc
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice, WornSensors
 from core.alignment import NetChange, ProsthesisPart
 from core.body import Side
+from core.prosthesis import NOT_STATED, AmputationLevel, FootKind, Prosthesis
+from core.session import Patient
 from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.live import LiveSource, SourceRefusedError
 from devices.search import FoundSensor, Passed, SearchResult
@@ -150,19 +153,38 @@ def test_streams_are_asked_for_by_a_choice_only_that_states_whom(monkeypatch: py
 
 
 @pytest.mark.parametrize(
-    ("sides", "is_user"), [((), False), ((Side.LEFT,), True), ((Side.RIGHT,), True), ((Side.LEFT, Side.RIGHT), False)]
+    ("side", "is_user"), [("", False), ("none", False), ("left", True), ("right", True), ("both", False)]
 )
-def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, ...], is_user: bool) -> None:
-    simulated = Sources(lambda: SearchResult(()))[0].for_sides(sides)
+def test_a_patient_with_one_prosthesis_is_simulated_with_it(side: str, is_user: bool) -> None:
+    simulated = Sources(lambda: SearchResult(()))[0].for_patient(Patient(prosthetic_side=side))
     assert simulated.key == DEMONSTRATION
     assert (simulated.make != Sources(lambda: SearchResult(()))[0].make) is is_user
-    if sides == (Side.LEFT,):
+    if side == "left":
         acquisition = simulated.make()
         acquisition.set_up(
             [NetChange(ProsthesisPart.PYLON, height_mm=3.0)]
         )  # who is simulated with none receives nothing
         assert acquisition.is_simulated
         acquisition.close()
+
+
+def test_the_simulated_patient_wears_what_was_stated_of_the_side_that_is_prosthetic(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made: list[tuple[Side, Prosthesis]] = []
+
+    def user(side: Side, _settings: object, *, fitted: Prosthesis) -> NoReturn:
+        made.append((side, fitted))
+        raise SourceRefusedError("no patient", "none needed")
+
+    monkeypatch.setattr(sources_module, "ProsthesisUser", user)
+    transtibial = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.SACH)
+    patient = Patient(prosthetic_side="right", prostheses={Side.RIGHT: transtibial, Side.LEFT: Prosthesis()})
+    for one in (patient, Patient(prosthetic_side="left", prostheses={Side.RIGHT: transtibial})):
+        choice = Sources(lambda: SearchResult(()))[0].for_patient(one)
+        with pytest.raises(SourceRefusedError, match="no patient"):
+            choice.make()
+    assert made == [(Side.RIGHT, transtibial), (Side.LEFT, NOT_STATED)]
 
 
 @pytest.mark.parametrize(
