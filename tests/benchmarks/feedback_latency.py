@@ -296,7 +296,7 @@ def _visit(site_of: dict[str, Site], calibration: Any) -> Any:
     sensors = SimpleNamespace(sensor_at={site: name for name, site in site_of.items()}, site_of=site_of)
     return SimpleNamespace(
         sensors=sensors,
-        evaluation=SimpleNamespace(calibration=calibration),
+        calibration=calibration,
         prosthetic_sides=frozenset(),
         rests=site_of,
     )
