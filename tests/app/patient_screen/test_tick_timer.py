@@ -1,4 +1,4 @@
-"""Ticks by a timer against a clock that the test moves: no drift, no burst, none twice, nothing after it was stopped."""
+"""Ticks by a timer against a clock that the test moves: no drift, no burst, none twice, none after it stopped."""
 
 from collections.abc import Iterator
 
