@@ -17,12 +17,13 @@ from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.widgets.toggle import Toggle
-from app.wording.translation import tr, within_sentence
+from app.wording.body import side_name
+from app.wording.translation import tr
 from core.body import Side
 from core.targets import Target, TargetMeasure
 
 NARROW_BELOW = 980
-FIELD_WIDTH = 120
+FIELD_WIDTH, FIELD_HEIGHT = 120, 48
 Choice = tuple[TargetMeasure, Side | None]
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 AT_FOOT = Qt.AlignmentFlag.AlignBottom
@@ -47,8 +48,7 @@ def measure_words(measure: TargetMeasure) -> str:
 def choice_words(choice: Choice) -> str:
     """Name a measure with its leg: "Knee in swing, left"."""
     measure, side = choice
-    sides = {Side.LEFT: tr("Left"), Side.RIGHT: tr("Right")}
-    return measure_words(measure) if side is None else f"{measure_words(measure)}, {within_sentence(sides[side])}"
+    return measure_words(measure) if side is None else f"{measure_words(measure)}, {side_name(side)}"
 
 
 class ControlsCard(Card):
@@ -60,12 +60,14 @@ class ControlsCard(Card):
     target_set = Signal(object)  # target, or None where nothing that fits is typed
     tone_set = Signal(bool)  # whether a tone is to sound where the target is reached
     metronome_pressed = Signal(int)  # its rate in steps per minute; 0: be silent
+    offered = Signal()  # it has come into sight, or is gone
 
     def __init__(self) -> None:
         super().__init__()
         self._typed: dict[TargetMeasure, int] = {}
         self._reasons: Mapping[Choice, str] = {}
-        self._is_ticking = False
+        self._is_ticking = self._is_judging = False
+        self._asked = choices()[0]  # what somebody chose, though it may not be possible now
         self.measure = Segmented(tr("Movement"), [(key, measure_words(key), "") for key in TargetMeasure])
         self.side = Segmented(tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
         low, high = TargetMeasure.KNEE_SWING_PEAK.limits
@@ -75,7 +77,8 @@ class ControlsCard(Card):
         self.tick = Button(tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
         self.full = Button(tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
         self.close_screen = Button(tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
-        self._wrong, self._status, self._sound = Notice(size=14), Notice(size=16, padding=0), Notice(size=14)
+        self.tone.set_face(height=FIELD_HEIGHT)
+        self._wrong, self._status, self._sound = Notice(size=16), Notice(size=16), Notice(size=16)
         self._gated = Text(size=14, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(tr("Patient screen"))
@@ -98,13 +101,12 @@ class ControlsCard(Card):
             scaled(field.setFixedWidth, FIELD_WIDTH)
         tone, tick, full, close = ((one, 0, AT_FOOT) for one in (self.tone, self.tick, self.full, self.close_screen))
         self._choose = lay_out(QBoxLayout(ACROSS), (self.measure, 1), self.side, spacing=12)
-        aimed, ticking = lay_out(QHBoxLayout(), self.target, tone), lay_out(QHBoxLayout(), self.rate, tick)
-        shown = lay_out(QHBoxLayout(), full, close)
-        for row in (aimed, ticking, shown):
-            scaled(row.setSpacing, 12)
-        aimed.addStretch(0)
-        self._set = lay_out(QBoxLayout(ACROSS), aimed, ticking, 1, shown, spacing=12)
-        lay_out(self.column, self._choose, self._set, self._wrong, self._status, self._sound, self._gated)
+        typed = lay_out(QHBoxLayout(), self.target, tone, self.rate, 1, spacing=12)
+        acts = lay_out(QHBoxLayout(), tick, 1, full, close, spacing=12)
+        self._set = lay_out(QBoxLayout(ACROSS), typed, (acts, 1), spacing=12)
+        stated = ((one, 1, Qt.AlignmentFlag.AlignTop) for one in (self._wrong, self._status, self._sound))
+        self._say = lay_out(QBoxLayout(ACROSS), *stated, spacing=12)
+        lay_out(self.column, self._choose, self._set, self._say, self._gated)
 
     @property
     def controls(self) -> list[QWidget]:
@@ -122,6 +124,11 @@ class ControlsCard(Card):
         """Why the chosen measure cannot be a target; empty where it can."""
         return self._reasons.get(self.choice, "")
 
+    def offer(self, is_offered: bool) -> None:
+        """Be there while the patient's screen is."""
+        self.setVisible(is_offered)
+        self.offered.emit()
+
     def focus(self) -> None:
         """Put the focus on the movement, which is chosen before its target is typed."""
         self.measure.focus()
@@ -134,13 +141,26 @@ class ControlsCard(Card):
         if self.reason:  # the side that takes its place is nobody's choice
             self._typed.pop(self.choice[0], None)
         gated = {m for m in TargetMeasure if all(choice in reasons for choice in choices() if choice[0] is m)}
+        self._is_judging = True
         if gated != set(TargetMeasure):  # one has to be chosen, whatever it is worth
             for measure in TargetMeasure:
                 self.measure.set_reason(measure, tr("not available") if measure in gated else "")
+        self._go_back()
         self._gated.setText("\n".join(_gated_lines(reasons)))
         self._gated.setVisible(bool(reasons))
         self._show()
+        self._is_judging = False
         self._show_message()
+
+    def _go_back(self) -> None:
+        """To what was chosen by hand, once that can be a target again and nothing else has become one."""
+        measure, side = self._asked
+        if self._asked in self._reasons or self.choice[0] in self._typed:
+            return
+        self.measure.choose(measure)
+        if side is not None:
+            self.side.set_reason(side, "")
+            self.side.choose(side)
 
     def show_status(self, what: str, then: str, *, is_caution: bool = False) -> None:
         """Say what the patient sees now, or why it is nothing, and what to do."""
@@ -170,12 +190,13 @@ class ControlsCard(Card):
             return
         event.accept()
         if self.focusWidget() in (*self.measure.segments, *self.side.segments):
-            self.target.line_edit.setFocus(Qt.FocusReason.TabFocusReason)  # which selects what is in it
+            self.target.line_edit.setFocus()
+            self.target.line_edit.selectAll()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         is_narrow = self.width() < px(NARROW_BELOW)
-        for row in (self._choose, self._set):
+        for row in (self._choose, self._set, self._say):
             row.setDirection(DOWN if is_narrow else ACROSS)
 
     def _show(self) -> None:
@@ -197,6 +218,7 @@ class ControlsCard(Card):
         """Say below the row what is wrong in its narrow fields."""
         wrong = next((field for field in (self.target, self.rate) if field.is_wrong), None)
         self._wrong.setVisible(wrong is not None)
+        self._status.setVisible(wrong is None)
         if wrong is not None:
             self._wrong.show_message(Icon.WARNING, wrong.wrong, "")
 
@@ -206,7 +228,11 @@ class ControlsCard(Card):
         self.target_set.emit(None if value is None else Target(measure, side, value))
 
     def _on_chosen(self) -> None:
+        if self._is_judging:
+            return  # nobody's choice; it is shown once all is judged
+        self._asked, self._is_judging = self.choice, True
         self._show()
+        self._is_judging = False
         self._show_message()
 
     def _on_target_committed(self) -> None:
@@ -215,6 +241,7 @@ class ControlsCard(Card):
             self._typed.pop(measure, None)
         else:
             self._typed[measure] = round(value)
+            self._asked = self.choice
         self._show_message()
 
     def _on_rate_entered(self) -> None:

@@ -136,17 +136,16 @@ def _paint_heading(painter: QPainter, view: PatientView, target: Target, theme: 
     _text(painter, theme, room, title_of(target), sizes.title, fits=True)
 
 
-def _paint_words(painter: QPainter, theme: Theme, box: QRectF, words: str) -> None:
-    """In several lines, as large as they have room in."""
-    flags = int(AT_LEFT.value) | Qt.TextFlag.TextWordWrap.value
-    size = 80
-    while size > 30:
+def _paint_words(painter: QPainter, theme: Theme, box: QRectF, words: str, most: float = 80, tone: str = "ink") -> None:
+    """In as many lines as they need, `most` px large or as large as they have room."""
+    flags, size = int(AT_LEFT.value) | Qt.TextFlag.TextWordWrap.value, most
+    while size > 8:
         found = QFontMetricsF(theme.font(size, SEMIBOLD)).boundingRect(box, flags, words)
         if found.width() <= box.width() and found.height() <= box.height():
             break
-        size -= 4
+        size -= 2
     painter.setFont(theme.font(size, SEMIBOLD))
-    painter.setPen(QColor(theme.colours.ink))
+    painter.setPen(QColor(getattr(theme.colours, tone)))
     painter.drawText(box, flags, words)
 
 
@@ -160,7 +159,7 @@ def _paint_target(painter: QPainter, target: Target, theme: Theme, sizes: _Sizes
     if words:
         half = 0.5 * min(QFontMetricsF(theme.font(sizes.target, SEMIBOLD)).horizontalAdvance(shown), 360.0)
         left = at + max(130.0, half + 16.0)
-        _text(painter, theme, QRectF(left, 280, RIGHT - left, 66), words, sizes.note, "ink2", flags=AT_LEFT, fits=True)
+        _paint_words(painter, theme, QRectF(left, 236, RIGHT - left, 132), words, sizes.note, "ink2")
 
 
 def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks, sizes: _Sizes) -> None:

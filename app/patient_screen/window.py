@@ -18,12 +18,14 @@ from PySide6.QtWidgets import QWidget
 from app.patient_screen.patient_view import PatientView
 from app.patient_screen.picture import HEIGHT, WIDTH, paint_patient_view
 from app.theme.current import px
+from app.widgets.grid import COMPACT_BELOW
 from app.wording.translation import tr
 
 LEAST = QSize(320, 200)
-CORNER_SHARE, CORNER_MOST = 0.36, 640  # of the screen's width, and px: what lies below stays of use
+CORNER_SHARE, CORNER_MOST = 0.3, 640  # of the screen's width, and px: what lies below stays of use
 GAP = 12
 ACTION_BAR = 72  # at the foot of the clinician's window, with what starts and stops the walk
+BAR_COUNTS = 20  # so many times as much as the rest
 
 
 @dataclass(slots=True)
@@ -53,6 +55,7 @@ class PatientWindow(QWidget):
 
     closed = Signal()  # by whatever way
     run_requested = Signal()  # Space was pressed here
+    placed = Signal(bool)  # whether it fills a screen now
 
     def __init__(self, placing: Placing | None = None) -> None:
         flags = Qt.WindowType.Window | Qt.WindowType.WindowStaysOnTopHint | Qt.WindowType.WindowDoesNotAcceptFocus
@@ -130,28 +133,37 @@ class PatientWindow(QWidget):
         self.setScreen(screen)
         if self._placing.is_full.get(second is not None, second is not None):
             self.setGeometry(_middle(screen.availableGeometry()))  # so that it fills this screen
-            self.showFullScreen()
+            self.setWindowState(Qt.WindowState.WindowFullScreen)  # Qt's own method would ask for the focus
+            self.show()
+            self.placed.emit(True)
             return
-        self.showNormal()
+        self.setWindowState(Qt.WindowState.WindowNoState)
+        self.show()
         if second is not None:
             self.setGeometry(_middle(screen.availableGeometry()))
         else:
             self.setGeometry(self._corner(screen.availableGeometry(), other.frameGeometry()))
             self._is_placed = True
+        self.placed.emit(False)
 
     def _corner(self, room: QRect, other: QRect) -> QRect:
-        """Where it was moved to, as far as that is on the screen; else the corner that hides least of `other`."""
+        """Where it was moved to, as far as that is on the screen; else the corner that hides least of `other`.
+
+        Its action bar is hidden last. Of equal corners the left comes first, where the rail is wide: there lie the list
+        of steps and what was a while ago, at the right the present. Without it the controls lie at the left.
+        """
         if self._placing.corner is not None and room.contains(self._placing.corner):
             return self._placing.corner
         width = max(min(round(CORNER_SHARE * room.width()), CORNER_MOST), LEAST.width())
         size = QSize(width, width * HEIGHT // WIDTH)
-        title = self.frameGeometry().height() - self.height() if self.isVisible() else 0
-        reaches_foot = other.bottom() >= room.bottom() - GAP
-        foot = px(ACTION_BAR) if reaches_foot else 0  # which stays in sight
-        tops = room.bottom() + 1 - foot - GAP - size.height(), room.top() + title + GAP
-        lefts = room.right() + 1 - GAP - size.width(), room.left() + GAP
+        bar = QRect(other.left(), other.bottom() + 1 - px(ACTION_BAR), other.width(), px(ACTION_BAR))
+        feet = room.bottom() + 1, min(room.bottom() + 1, bar.top())
+        tops = [foot - GAP - size.height() for foot in feet]
+        lefts = [room.left() + GAP, room.right() + 1 - GAP - size.width()]
+        if other.width() < px(COMPACT_BELOW[0]):
+            lefts.reverse()
         places = [QRect(QPoint(left, top), size) for top in tops for left in lefts]
-        return min(places, key=lambda place: _area(place.intersected(other)))
+        return min(places, key=lambda one: _shared(one, other) + BAR_COUNTS * _shared(one, bar))
 
     def _note_corner(self) -> None:
         if self._is_placed and not self.isFullScreen() and self.isVisible():
@@ -174,5 +186,7 @@ def _middle(room: QRect) -> QRect:
     return place
 
 
-def _area(place: QRect) -> int:
-    return place.width() * place.height() if place.isValid() else 0
+def _shared(one: QRect, other: QRect) -> int:
+    """How many pixels two places have in common."""
+    both = one.intersected(other)
+    return both.width() * both.height() if both.isValid() else 0

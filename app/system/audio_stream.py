@@ -17,11 +17,11 @@ from app.system.wave_out import WaveOut
 
 RATE_HZ = 48_000
 BLOCK = 960  # samples, 20 ms
-# What is handed over but not heard yet, 0.2 s in all: a busy program is later than that by chance only, and a new rate
-# is heard as soon.
-PIPE_BYTES = 8192
-_RAW = ("--raw", "--format=s16le", f"--rate={RATE_HZ}", "--channels=1", "--latency-msec=120")
-_ALSA = ("-q", "-t", "raw", "-f", "S16_LE", "-r", str(RATE_HZ), "-c", "1", "--buffer-time=120000", "-")
+# What is handed over but not heard yet, half a second in all: a busy computer is later than that by chance only.
+# A sound is heard so much later; closing is at once.
+PIPE_BYTES = 16_384
+_RAW = ("--raw", "--format=s16le", f"--rate={RATE_HZ}", "--channels=1", "--latency-msec=300")
+_ALSA = ("-q", "-t", "raw", "-f", "S16_LE", "-r", str(RATE_HZ), "-c", "1", "--buffer-time=300000", "-")
 PIPED_PLAYERS: Sequence[Sequence[str]] = (("paplay", *_RAW), ("aplay", *_ALSA)) if sys.platform == "linux" else ()
 CLOSE_S = 1.0  # no player takes longer to end
 

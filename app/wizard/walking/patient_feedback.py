@@ -79,7 +79,7 @@ class PatientFeedback(QObject):
         controls.full.clicked.connect(self.toggle_full_screen)
         controls.close_screen.clicked.connect(self.close)
         self.metronome.changed.connect(self._on_metronome_changed)
-        controls.setVisible(False)
+        controls.offer(False)
 
     @property
     def is_open(self) -> bool:
@@ -100,11 +100,11 @@ class PatientFeedback(QObject):
         window = self.window = PatientWindow(self._placing)
         window.closed.connect(self.close)
         window.run_requested.connect(self.run_requested)
-        self._controls.setVisible(True)
+        self._controls.offer(True)
         self._controls.focus()
         self.look()
+        window.placed.connect(self._controls.show_full)
         window.open_beside(self._controls.window())
-        self._controls.show_full(window.isFullScreen())
         self._timer.start()
 
     @Slot()
@@ -116,7 +116,7 @@ class PatientFeedback(QObject):
         if window is not None:
             window.close()
             window.deleteLater()
-            self._controls.setVisible(False)
+            self._controls.offer(False)
 
     @Slot()
     def toggle_full_screen(self) -> None:
@@ -125,7 +125,6 @@ class PatientFeedback(QObject):
             self.toggle()
         else:
             self.window.toggle_full_screen()
-            self._controls.show_full(self.window.isFullScreen())
 
     def watch(self, estimator: "WalkingEstimator | None") -> None:
         """Take values from here on from `estimator`, which begins to count them again."""
@@ -168,6 +167,8 @@ class PatientFeedback(QObject):
         self._controls.show_reasons(reasons)
         if was is not None and self.target is None and (was.measure, was.side) in reasons:
             self._lost, self._is_waiting = (was.measure, was.side), True
+        elif self._lost is not None and self._lost not in reasons:
+            self._lost, self._is_waiting = None, False
 
     @Slot()
     def look(self) -> None:
@@ -236,8 +237,8 @@ class PatientFeedback(QObject):
             then = tr("The patient is asked to wait. Choose another movement, or type a target again.")
         else:
             what, then = status_of(self.view, self._hindered, is_recording=self._counted is not None)
-        is_caution = self._is_waiting and self._hindered != NOTHING
-        self._controls.show_status(what, then, is_caution=is_caution or self._lost is not None)
+        is_hindered = self._hindered != NOTHING and self._counted is not None
+        self._controls.show_status(what, then, is_caution=is_hindered or self._lost is not None)
         self._controls.show_sound(*self._sound_message())
 
     def _sound_message(self) -> Message:

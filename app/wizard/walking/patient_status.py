@@ -94,7 +94,7 @@ def _of_site(site: Site, is_missing: bool, has_slipped: bool) -> Message:
         what, then = tr("{site}: strap moved."), tr("The patient sees no value. Tighten the strap, repeat free motion.")
     else:
         what = tr("{site}: steps do not match the knee.")
-        then = tr("The patient sees no value until they match. Check the sensor positions.")
+        then = tr("Usual before the walk. If it stays while the patient walks, check the sensor positions.")
     return what.format(site=name_of(site)), then
 
 

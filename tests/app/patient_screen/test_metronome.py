@@ -163,6 +163,7 @@ def test_where_no_stream_can_be_played_it_ticks_one_by_one(
 ) -> None:
     ticks: list[str] = []
     monkeypatch.setattr(sounds, "play", ticks.append)
+    monkeypatch.setattr(sounds, "has_output", lambda: True)
     metronome = Metronome(play=playing_to())
     made.append(metronome)
     metronome.start(200)
