@@ -38,8 +38,8 @@ from app.acquisition.acquisition import Acquisition
 from app.acquisition.live_sensors import live_sensors
 from app.acquisition.preview import EVERY_S, LEAST_PAUSE_S
 from app.main_window import SWITCH_S
-from app.storage.journal.writer import JournalWriter
 from app.patient_screen.picture import HEIGHT, WIDTH
+from app.storage.journal.writer import JournalWriter
 from app.system import sounds
 from app.system.sounds import Sound
 from app.theme.current import load_fonts
