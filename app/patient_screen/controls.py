@@ -167,7 +167,7 @@ class ControlsCard(Card):
         self._status.show_message(Icon.WARNING if is_caution else Icon.INFO, what, then, is_caution=is_caution)
 
     def show_sound(self, what: str, then: str) -> None:
-        """Say why neither tone nor metronome can be heard; nothing takes it back."""
+        """Say why tone and metronome are inaudible; nothing takes it back."""
         self._sound.show_message(Icon.SOUND_OFF, what, then)
         self._sound.setVisible(bool(what))
 

@@ -1,6 +1,6 @@
 """A metronome that keeps time to the sample: its clicks are one stream of sound, paced by the sound card.
 
-Where no such stream can be played it ticks one by one, by a timer; where nothing can be heard at all it says so.
+Where no such stream can be played it ticks one by one, by a timer; where nothing can play at all `is_silent` holds.
 """
 
 import contextlib

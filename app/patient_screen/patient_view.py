@@ -16,9 +16,9 @@ class PatientView:
     """`last` are the values of the last strides, SHOWN_STRIDES at most, the newest last.
 
     `is_waiting`: what is aimed at cannot be measured now, so no value is shown, old ones neither. `is_standing`: the
-    patient stands, so the last stride is over; while somebody walks it stays until the next. `has_sound`: whether a
-    tone is heard where the target is reached. `steps`: of the walk that goes on, as the operator sees them; None
-    between walks.
+    patient is, so the last stride is over; while somebody walks it stays until the next. `has_sound`: whether a tone is
+    audible where the target is reached. `steps`: of the walk that goes on, as the operator sees them; None between
+    walks.
     """
 
     target: Target | None = None
@@ -30,7 +30,7 @@ class PatientView:
 
     @property
     def value(self) -> int | None:
-        """Of the last stride, until the next or until the patient stands."""
+        """Of the last stride, until the next or until the patient is standing."""
         return self.last[-1] if self.last and not self.is_waiting and not self.is_standing else None
 
     @property
@@ -84,7 +84,7 @@ def figure(value: int, measure: TargetMeasure) -> str:
 
 
 def next_step_words() -> str:
-    """In the place of a value while the patient stands."""
+    """In the place of a value while the patient is standing."""
     return tr("Waiting for the next step")
 
 

@@ -2,7 +2,7 @@
 
 A player that is started for each click is late by tens of milliseconds, each time by others. Here one player takes all
 samples, and the sound card paces it. On Linux it is PulseAudio's or ALSA's own, fed through a pipe; on Windows the
-system's `waveOut`. macOS has no player that takes samples from a pipe: there nothing is played, and `failed` says so.
+system's `waveOut`. macOS has no player that takes samples from a pipe: there nothing is played, and `failed` is called.
 """
 
 import contextlib
@@ -10,6 +10,7 @@ import logging
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from threading import Event, Thread
 from typing import Protocol
 
@@ -17,8 +18,8 @@ from app.system.wave_out import WaveOut
 
 RATE_HZ = 48_000
 BLOCK = 960  # samples, 20 ms
-# What is handed over but not heard yet, half a second in all: a busy computer is later than that by chance only.
-# A sound is heard so much later; closing is at once.
+# What is handed over but not played yet, half a second in all: a busy computer is later than that by chance only.
+# A sound comes so much later; closing is at once.
 PIPE_BYTES = 16_384
 _RAW = ("--raw", "--format=s16le", f"--rate={RATE_HZ}", "--channels=1", "--latency-msec=300")
 _ALSA = ("-q", "-t", "raw", "-f", "S16_LE", "-r", str(RATE_HZ), "-c", "1", "--buffer-time=300000", "-")
@@ -28,7 +29,7 @@ CLOSE_S = 1.0  # no player takes longer to end
 _log = logging.getLogger(__name__)
 
 
-class Outlet(Protocol):
+class SoundOutlet(Protocol):
     """What takes samples and plays them."""
 
     def write(self, samples: bytes) -> None:
@@ -67,17 +68,17 @@ class PipedPlayer:
             pass
 
 
-def outlets(players: Sequence[Sequence[str]] = PIPED_PLAYERS) -> list[Callable[[], Outlet]]:
+def outlets(players: Sequence[Sequence[str]] = PIPED_PLAYERS) -> list[Callable[[], SoundOutlet]]:
     """Give what may play here, the best first; each makes an outlet."""
     if sys.platform == "win32":
         return [lambda: WaveOut(RATE_HZ)]
-    return [lambda player=player: PipedPlayer(player) for player in players]  # type: ignore[misc]
+    return [partial(PipedPlayer, player) for player in players]
 
 
 class AudioStream:
     """Plays what `read` gives, one channel of 16 bits at RATE_HZ, from its making until it is closed.
 
-    `read` is given how many samples are wanted and gives as many, little-endian; `failed` is called when nothing plays
+    `read` is given a number of samples and gives as many, little-endian; `failed` is called when nothing plays
     them, or no longer. Both are called on a thread of the stream's own.
     """
 
@@ -85,11 +86,11 @@ class AudioStream:
         self,
         read: Callable[[int], bytes],
         failed: Callable[[], None],
-        ways: Sequence[Callable[[], Outlet]] | None = None,
+        ways: Sequence[Callable[[], SoundOutlet]] | None = None,
     ) -> None:
         self._read, self._failed = read, failed
         self._ways = outlets() if ways is None else ways
-        self._outlet: Outlet | None = None
+        self._outlet: SoundOutlet | None = None
         self._is_closing = Event()
         # a daemon: the end of the program waits for no sound
         self._thread = Thread(target=self._run, name="audio stream", daemon=True)
@@ -113,7 +114,7 @@ class AudioStream:
                 return
         self._failed()
 
-    def _play(self, outlet: Outlet) -> None:
+    def _play(self, outlet: SoundOutlet) -> None:
         self._outlet = outlet
         try:
             while not self._is_closing.is_set():

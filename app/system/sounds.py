@@ -138,7 +138,7 @@ def is_on() -> bool:
 
 
 def has_output() -> bool:
-    """Whether sounds can be heard here, as far as any was played yet."""
+    """Whether sounds are audible here, as far as any was played yet."""
     return _loudspeaker.has_output
 
 

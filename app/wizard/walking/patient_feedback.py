@@ -180,7 +180,7 @@ class PatientFeedback(QObject):
         self._show_status(view)
 
     def judge(self, view: "WalkingReadout") -> None:
-        """Look whether what is aimed at can be measured at this moment, and whether the patient stands."""
+        """Look whether what is aimed at can be measured at this moment, and whether the patient is standing."""
         self._is_standing = is_standing(view)
         if self.target is None:
             return

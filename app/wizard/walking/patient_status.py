@@ -1,6 +1,6 @@
-"""What the clinician is told beside the controls of the patient's screen: what can be a target, and what hinders one.
+"""What the clinician reads beside the controls of the patient's screen: what can be a target, and what hinders one.
 
-Every state has its words, so that a screen without a value is never a riddle.
+Every state has its words, so that the reason for a screen without a value is always on the page.
 """
 
 import math
@@ -21,8 +21,8 @@ from core.results import JointCalibration
 from core.targets import Target, TargetMeasure
 from core.verdicts.live_targets import assess_target
 
-# Nothing changed for so long: the patient stands. Somebody whose strides take 3 s, the longest that are counted, has a
-# foot flat for 1.8 s of each, and the knee that is far from still meanwhile.
+# Nothing changed for so long: the patient is standing. Somebody whose strides take 3 s, the longest that are counted,
+# has a foot flat for 1.8 s of each, and the knee is far from still meanwhile.
 STANDING_AFTER_S = 2.5
 STILL_KNEE_DEG = 8.0  # within that time: a knee that swings, even a stiff one, moves more; one that sways less
 

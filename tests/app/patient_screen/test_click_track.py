@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from app.patient_screen.click_track import ClickTrack
-from tests.app.patient_screen.heard import onsets_s
+from tests.app.patient_screen.sound_detection import onsets_s
 
 RATE_HZ = 48_000
 MOST_OFF_S = 0.002
@@ -22,7 +22,7 @@ def rendered(track: ClickTrack, seconds: float, block: int = 960) -> NDArray[np.
     return np.concatenate(parts).astype(float)
 
 
-@pytest.mark.parametrize("beats_per_min", [30, 61, 97, 113, 200])
+@pytest.mark.parametrize("beats_per_min", [30, 97, 200])
 def test_ten_minutes_of_clicks_do_not_drift(beats_per_min: int) -> None:
     track = ClickTrack(click(), RATE_HZ)
     track.set_rate(beats_per_min)

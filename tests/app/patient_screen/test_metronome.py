@@ -1,5 +1,6 @@
-"""What the metronome sends to the sound device, found in its samples; and that it says where nobody can hear it."""
+"""What the metronome sends to the sound device, found in its samples; and that it reports where nothing plays them."""
 
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -11,10 +12,10 @@ from pytestqt.qtbot import QtBot
 
 from app.patient_screen.metronome import Metronome
 from app.system import sounds
-from app.system.audio_stream import RATE_HZ, AudioStream, Outlet, PipedPlayer
+from app.system.audio_stream import RATE_HZ, AudioStream, PipedPlayer, SoundOutlet
 from app.system.sounds import Loudspeaker
 from core.samples import FloatArray
-from tests.app.patient_screen.heard import onsets_s
+from tests.app.patient_screen.sound_detection import onsets_s
 
 MOST_OFF_S = 0.002
 REFUSES = [sys.executable, "-c", "import sys; sys.exit(1)"]
@@ -45,11 +46,11 @@ class Device:
         return len(self.samples) >= self.most
 
     @property
-    def heard(self) -> FloatArray:
+    def played(self) -> FloatArray:
         return np.frombuffer(bytes(self.samples), "<i2").astype(float)
 
 
-def playing_to(*ways: Callable[[], Outlet]) -> Callable[[Callable[[int], bytes], Callable[[], None]], AudioStream]:
+def playing_to(*ways: Callable[[], SoundOutlet]) -> Callable[[Callable[[int], bytes], Callable[[], None]], AudioStream]:
     return lambda read, failed: AudioStream(read, failed, ways)
 
 
@@ -70,7 +71,7 @@ def test_what_is_sent_to_the_device_clicks_at_the_set_cadence_without_drift(
     metronome.start(103)
     qtbot.waitUntil(lambda: device.is_full, timeout=60_000)
     metronome.stop()
-    found_s = onsets_s(device.heard[: 600 * RATE_HZ], RATE_HZ)
+    found_s = onsets_s(device.played[: 600 * RATE_HZ], RATE_HZ)
     assert len(found_s) == 1030
     assert np.abs(found_s - found_s[0] - 60.0 / 103 * np.arange(1030)).max() < MOST_OFF_S
 
@@ -85,7 +86,7 @@ def test_a_new_cadence_goes_into_the_same_stream_and_no_click_is_doubled(qtbot: 
     device.most += 2 * RATE_HZ * 10
     qtbot.waitUntil(lambda: device.is_full)
     metronome.stop()
-    gaps_s = np.diff(onsets_s(device.heard, RATE_HZ))
+    gaps_s = np.diff(onsets_s(device.played, RATE_HZ))
     assert gaps_s.min() > 0.6 - MOST_OFF_S
     assert gaps_s.max() < 1.0 + MOST_OFF_S
     assert np.abs(gaps_s[6:] - 0.6).max() < MOST_OFF_S
@@ -106,7 +107,7 @@ def test_the_bell_makes_it_silent_and_the_clicks_after_it_are_in_time(qtbot: QtB
     device.most += 2 * RATE_HZ * 4
     qtbot.waitUntil(lambda: device.is_full)
     metronome.stop()
-    found_s = onsets_s(device.heard, RATE_HZ)
+    found_s = onsets_s(device.played, RATE_HZ)
     assert len(found_s) in (9, 10)
     assert np.abs(found_s - found_s[0] - np.round(found_s - found_s[0])).max() < MOST_OFF_S
     assert np.diff(found_s).max() == pytest.approx(5.0, abs=MOST_OFF_S)
@@ -127,20 +128,26 @@ def test_a_player_beside_the_program_is_given_the_same_samples(
     assert np.abs(np.diff(found_s) - 0.5).max() < MOST_OFF_S
 
 
-def test_it_stops_at_once_and_leaves_no_player_behind(qtbot: QtBot, made: list[Metronome]) -> None:
-    players: list[PipedPlayer] = []
-
-    def waiting() -> Outlet:
-        players.append(PipedPlayer([sys.executable, "-c", "import time; time.sleep(600)"]))
-        return players[-1]
-
-    metronome = Metronome(play=playing_to(waiting))
+@pytest.mark.skipif(os.name == "nt", reason="Windows keeps no ended process for the one that started it")
+def test_it_stops_at_once_and_leaves_no_player_behind(qtbot: QtBot, made: list[Metronome], tmp_path: Path) -> None:
+    number = tmp_path / "number"
+    waits = f"import os, time; print(os.getpid(), file=open({str(number)!r}, 'w'), flush=True); time.sleep(600)"
+    metronome = Metronome(play=playing_to(lambda: PipedPlayer([sys.executable, "-c", waits])))
     made.append(metronome)
     metronome.start(60)
-    qtbot.waitUntil(lambda: players != [])
+    qtbot.waitUntil(lambda: number.exists() and number.read_text().endswith("\n"))
     metronome.stop()
-    assert players[0]._process.poll() is not None
     assert metronome.beats_per_min == 0
+    qtbot.waitUntil(lambda: is_gone(int(number.read_text())))
+
+
+def is_gone(process: int) -> bool:
+    """Return whether nothing is left of a process; one that ended and was not waited for is still there."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return True
+    return False
 
 
 def test_without_a_sound_device_it_is_silent_and_states_so(
@@ -173,7 +180,11 @@ def test_where_no_stream_can_be_played_it_ticks_one_by_one(
     assert metronome.beats_per_min == 30
 
 
-def test_a_stream_that_was_stopped_meanwhile_starts_no_ticks(qtbot: QtBot, made: list[Metronome]) -> None:
+def test_a_stream_that_was_stopped_meanwhile_starts_no_ticks(
+    qtbot: QtBot, made: list[Metronome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ticks: list[str] = []
+    monkeypatch.setattr(sounds, "play", ticks.append)
     failing: list[Callable[[], None]] = []
 
     def never(read: Callable[[int], bytes], failed: Callable[[], None]) -> AudioStream:
@@ -186,10 +197,9 @@ def test_a_stream_that_was_stopped_meanwhile_starts_no_ticks(qtbot: QtBot, made:
     metronome.stop()
     metronome.start(90)
     failing[0]()
-    qtbot.wait(1)
-    assert metronome._stream is not None
-    failing[1]()
-    qtbot.waitUntil(lambda: metronome._stream is None)
+    with qtbot.waitSignal(metronome.changed):
+        failing[1]()  # comes after the other
+    assert len(ticks) == 1
 
 
 def test_a_rate_nobody_walks_at_is_refused() -> None:

@@ -74,7 +74,9 @@ def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindo
     assert "One moment" not in window.accessibleName()
 
 
-def test_while_the_patient_stands_it_waits_for_the_next_step_and_keeps_the_last_ones(window: PatientWindow) -> None:
+def test_while_the_patient_is_standing_it_waits_for_the_next_step_and_keeps_the_last_ones(
+    window: PatientWindow,
+) -> None:
     window.show_view(PatientView(KNEE, TEN, is_standing=True))
     assert window.accessibleName() == (
         "Left knee: bend it as the leg swings. Target 55°. Waiting for the next step. Last 10 steps: 7 reached 55°."
@@ -266,9 +268,9 @@ def test_in_a_corner_no_letter_is_too_small_to_be_read(qtbot: QtBot, monkeypatch
     sizes: list[float] = []
     plain = Theme.font
 
-    def noted(theme: Theme, size: float, *more: object) -> QFont:
+    def noted(theme: Theme, size: float, weight: QFont.Weight = QFont.Weight.Normal, is_code: bool = False) -> QFont:
         sizes.append(size)
-        return plain(theme, size, *more)  # type: ignore[arg-type]
+        return plain(theme, size, weight, is_code)
 
     window = PatientWindow()
     qtbot.addWidget(window)

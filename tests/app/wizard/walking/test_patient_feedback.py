@@ -27,7 +27,7 @@ from core.gait.phases import Phase
 from core.live.stride_values import StrideValue
 from core.results import ZeroKind
 from core.targets import Target, TargetMeasure, TargetTally
-from tests.app.patient_screen.heard import spans_s
+from tests.app.patient_screen.sound_detection import spans_s
 from tests.core.verdicts.built_walk import calibration
 
 KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
@@ -68,14 +68,19 @@ def estimator() -> Reported:
 
 
 @pytest.fixture
-def feedback(qtbot: QtBot, estimator: Reported, received: list[Sound]) -> Iterator[PatientFeedback]:
+def visit() -> Any:
+    """What the feedback asks of a visit."""
+    sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN, are_in_memory=False)
+    return SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
+
+
+@pytest.fixture
+def feedback(qtbot: QtBot, visit: Any, estimator: Reported, received: list[Sound]) -> Iterator[PatientFeedback]:
     page = QWidget()
     qtbot.addWidget(page)
     card = ControlsCard()
     card.setParent(page)
     page.show()
-    sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN, are_in_memory=False)
-    visit: Any = SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
     feedback = PatientFeedback(visit, card, page, lambda: estimator.state)
     feedback.toggle()
     reported: Any = estimator
@@ -185,7 +190,7 @@ def test_a_walk_counts_its_own_strides_for_each_target(
 
 
 def status(feedback: PatientFeedback) -> str:
-    """All that the clinician is told beside the controls."""
+    """All that is stated beside the controls."""
     notices = card_of(feedback).findChildren(Notice)
     return " ".join(one.text for one in notices if not one.isHidden())
 
@@ -205,7 +210,7 @@ def has_sound(feedback: PatientFeedback) -> bool:
 STANDING = {side: LiveLane((PhaseSpan(Phase.FOOT_FLAT, 0.0, None),)) for side in Side}
 
 
-def test_while_the_patient_stands_the_next_step_is_waited_for_and_between_steps_the_value_stays(
+def test_while_the_patient_is_standing_the_next_step_is_waited_for_and_between_steps_the_value_stays(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
 ) -> None:
     estimator.show_message(*knee(60.0))
@@ -246,8 +251,8 @@ def test_what_hinders_a_value_is_stated_to_the_clinician_and_is_gone_when_it_is_
         assert "One moment" not in feedback.view.in_words
 
 
-def test_without_a_target_a_walk_or_data_the_clinician_is_told_what_is_missing(
-    feedback: PatientFeedback, estimator: Reported
+def test_without_a_target_a_walk_or_data_what_is_missing_is_stated(
+    feedback: PatientFeedback, visit: Any, estimator: Reported
 ) -> None:
     assert "No walk is being recorded. Space starts one." in status(feedback)
     feedback.begin_walk()
@@ -259,12 +264,14 @@ def test_without_a_target_a_walk_or_data_the_clinician_is_told_what_is_missing(
     estimator.state = WalkingReadout()
     feedback.look()
     assert "No sensor data." in status(feedback)
+    visit.sensors.are_in_memory = True
+    feedback.look()
+    assert "The sensors store the walk themselves." in status(feedback)
 
 
 def test_a_knee_that_can_no_longer_be_a_target_lets_the_patient_wait_and_is_named(
-    feedback: PatientFeedback, estimator: Reported
+    feedback: PatientFeedback, visit: Any
 ) -> None:
-    visit: Any = feedback._visit
     card = card_of(feedback)
     card.target.set_value(55)
     card.target.committed.emit()
@@ -311,7 +318,7 @@ def test_it_is_judged_though_no_page_ticks_as_under_the_manual(
     qtbot.waitUntil(lambda: feedback.view.is_waiting)
 
 
-def test_the_tone_is_off_by_choice_and_why_nothing_is_heard_is_stated(
+def test_the_tone_is_off_by_choice_and_why_nothing_sounds_is_stated(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sounds, "has_output", lambda: True)
@@ -339,7 +346,7 @@ def test_the_tone_is_off_by_choice_and_why_nothing_is_heard_is_stated(
     assert received == [Sound.REACHED]
 
 
-def test_what_the_patient_hears_is_one_tone_for_each_step_that_reached(
+def test_the_samples_that_are_played_hold_one_tone_for_each_step_that_reached(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By the samples that the player is given, one file after the other."""

@@ -1,4 +1,4 @@
-"""Whether the patient stands, on walkers that are slow and on people after a stroke; and why a target has no value."""
+"""When the patient is standing, on slow walkers and on people after a stroke; and why a target has no value."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -102,10 +102,10 @@ def test_a_stride_of_two_and_a_half_seconds_is_no_standing_and_half_a_minute_ami
     for worn, calibration in ways:
         looked, _ = looked_at(worn, calibration)
         contacts_s = true_s - float(before.imu[Site.LEFT_FOOT].time_s[0]) + 10.0
-        amid = [stands for at_s, stands in looked if contacts_s[0] < at_s < contacts_s[-1]]
+        amid = [is_still for at_s, is_still in looked if contacts_s[0] < at_s < contacts_s[-1]]
         assert len(amid) > 50
         assert not any(amid)
-        pausing = [stands for at_s, stands in looked if stops_s + STANDING_AFTER_S + 1.0 < at_s < goes_on_s]
+        pausing = [is_still for at_s, is_still in looked if stops_s + STANDING_AFTER_S + 1.0 < at_s < goes_on_s]
         assert len(pausing) > 250
         assert all(pausing)
 
@@ -119,7 +119,7 @@ def test_nobody_who_walks_after_a_stroke_seems_to_stand(test_data: Callable[[str
             part = slice(0, int(np.searchsorted(block.time_s, first_s + 20.0)))
             parts[site] = ImuBlock(block.sensor, block.time_s[part], block.gyr_rad_s[part], block.acc_m_s2[part])
         looked, estimator = looked_at(parts)
-        assert not any(stands for _, stands in looked), folder.name
+        assert not any(is_still for _, is_still in looked), folder.name
         assert estimator.state.values_reported > 0
 
 
@@ -128,25 +128,25 @@ def flat(since_s: float) -> LiveLane:
 
 
 def test_who_has_not_been_seen_on_the_floor_yet_or_sends_nothing_does_not_stand() -> None:
-    stands = WalkingReadout(now_s=10.0, lanes={Side.LEFT: flat(2.0), Side.RIGHT: flat(3.0)})
-    assert is_standing(stands)
-    assert not is_standing(replace(stands, lanes={Side.LEFT: flat(2.0), Side.RIGHT: LiveLane()}))
-    assert not is_standing(replace(stands, lanes={Side.LEFT: flat(2.0), Side.RIGHT: flat(9.0)}))
-    assert not is_standing(replace(stands, lanes={}))
-    silent = replace(stands, lanes={Side.LEFT: flat(2.0), Side.RIGHT: flat(9.0)}, missing=(Site.RIGHT_FOOT,))
+    is_still = WalkingReadout(now_s=10.0, lanes={Side.LEFT: flat(2.0), Side.RIGHT: flat(3.0)})
+    assert is_standing(is_still)
+    assert not is_standing(replace(is_still, lanes={Side.LEFT: flat(2.0), Side.RIGHT: LiveLane()}))
+    assert not is_standing(replace(is_still, lanes={Side.LEFT: flat(2.0), Side.RIGHT: flat(9.0)}))
+    assert not is_standing(replace(is_still, lanes={}))
+    silent = replace(is_still, lanes={Side.LEFT: flat(2.0), Side.RIGHT: flat(9.0)}, missing=(Site.RIGHT_FOOT,))
     assert is_standing(silent)  # by the other
     assert not is_standing(replace(silent, missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT)))
     assert not is_standing(WalkingReadout())
 
 
-@pytest.mark.parametrize(("sway_deg", "stands"), [(5.0, True), (12.0, False)])
-def test_who_sways_stands_and_who_bends_a_knee_does_not(sway_deg: float, stands: bool) -> None:
+@pytest.mark.parametrize(("sway_deg", "is_still"), [(5.0, True), (12.0, False)])
+def test_who_sways_is_standing_and_who_bends_a_knee_is_not(sway_deg: float, is_still: bool) -> None:
     time_s = np.arange(0.0, 10.0, 0.01)
     angles_rad = np.deg2rad(0.5 * sway_deg * np.sin(2 * np.pi * 0.7 * time_s))
     angles_rad[-30:-20] = np.nan
     lanes = {Side.LEFT: flat(2.0), Side.RIGHT: flat(3.0)}
     view = WalkingReadout(now_s=10.0, lanes=lanes, joints={Joint.LEFT_KNEE: LiveTrace(time_s, angles_rad)})
-    assert is_standing(view) is stands
+    assert is_standing(view) is is_still
 
 
 def test_what_hinders_names_the_part_of_the_leg_that_is_aimed_at_only() -> None:

@@ -1,4 +1,4 @@
-"""What somebody would hear in samples, found by the samples alone: when clicks begin, when a tone sounds."""
+"""Find sounds in samples, by the samples alone: when clicks begin, when a tone sounds."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ def onsets_s(samples: FloatArray, rate_hz: float, share: float = 0.5) -> FloatAr
 
 
 def spans_s(samples: FloatArray, rate_hz: float, tone_hz: float, share: float = 0.3) -> list[tuple[float, float]]:
-    """From when to when a tone of this frequency sounds: its power in windows of 10 ms, whatever else is heard."""
+    """From when to when a tone of this frequency sounds: its power in windows of 10 ms, whatever else sounds."""
     window = round(0.01 * rate_hz)
     count = len(samples) // window
     time_s = np.arange(window) / rate_hz
