@@ -56,7 +56,7 @@ class WaveOut:
         self._playing: deque[tuple[WaveHeader, Any]] = deque()  # Windows reads them until they are done
         self._is_silent = False
         form = WaveFormat(PCM, 1, rate_hz, 2 * rate_hz, 2, 16, 0)
-        self._ask("waveOutOpen", ctypes.byref(self._device), MAPPER, ctypes.byref(form), *_NOBODY, NO_CALLBACK)
+        self._ask("waveOutOpen", ctypes.pointer(self._device), MAPPER, ctypes.pointer(form), *_NOBODY, NO_CALLBACK)
 
     def write(self, samples: bytes) -> None:
         """Take a block; waits while BLOCKS of them are not played yet."""
@@ -71,9 +71,9 @@ class WaveOut:
             return
         data = ctypes.create_string_buffer(samples, len(samples))
         header = WaveHeader(ctypes.addressof(data), len(samples))
-        self._ask("waveOutPrepareHeader", self._device, ctypes.byref(header), ctypes.sizeof(header))
+        self._ask("waveOutPrepareHeader", self._device, ctypes.pointer(header), ctypes.sizeof(header))
         self._playing.append((header, data))
-        self._ask("waveOutWrite", self._device, ctypes.byref(header), ctypes.sizeof(header))
+        self._ask("waveOutWrite", self._device, ctypes.pointer(header), ctypes.sizeof(header))
 
     def fall_silent(self) -> None:
         """Play no more; `close` follows on the thread that writes."""
@@ -83,13 +83,13 @@ class WaveOut:
         self._winmm.waveOutReset(self._device)  # every block is done then
         while self._playing:
             header, _data = self._playing.popleft()
-            self._winmm.waveOutUnprepareHeader(self._device, ctypes.byref(header), ctypes.sizeof(header))
+            self._winmm.waveOutUnprepareHeader(self._device, ctypes.pointer(header), ctypes.sizeof(header))
         self._winmm.waveOutClose(self._device)
 
     def _let_go(self) -> None:
         while self._playing and self._playing[0][0].dwFlags & DONE:
             header, _data = self._playing.popleft()
-            self._ask("waveOutUnprepareHeader", self._device, ctypes.byref(header), ctypes.sizeof(header))
+            self._ask("waveOutUnprepareHeader", self._device, ctypes.pointer(header), ctypes.sizeof(header))
 
     def _ask(self, function: str, *arguments: object) -> None:
         if answer := getattr(self._winmm, function)(*arguments):

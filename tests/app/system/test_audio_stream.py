@@ -29,19 +29,19 @@ class Winmm:
         self.most_queued = 0
         self.is_open = self.is_stalled = False
 
-    def waveOutOpen(self, device: Any, mapper: int, form: Any, *_nobody: Any) -> int:  # noqa: N802  Windows' name
+    def waveOutOpen(self, device: Any, mapper: int, form: Any, *_nobody: Any) -> int:  # noqa: N802  Windows names it
         assert mapper == 0xFFFFFFFF
-        self.form = struct.unpack("<HHIIHHH", ctypes.string_at(ctypes.addressof(form._obj), 18))
+        self.form = struct.unpack("<HHIIHHH", ctypes.string_at(ctypes.addressof(form.contents), 18))
         self.is_open = self.refuses != "waveOutOpen"
         return 0 if self.is_open else 6
 
-    def waveOutPrepareHeader(self, device: Any, header: Any, size: int) -> int:  # noqa: N802  Windows' name
+    def waveOutPrepareHeader(self, device: Any, header: Any, size: int) -> int:  # noqa: N802  Windows names it
         assert size == HEADER_BYTES
-        self.prepared.add(ctypes.addressof(header._obj))
+        self.prepared.add(ctypes.addressof(header.contents))
         return 0
 
-    def waveOutWrite(self, device: Any, header: Any, size: int) -> int:  # noqa: N802  Windows' name
-        at = ctypes.addressof(header._obj)
+    def waveOutWrite(self, device: Any, header: Any, size: int) -> int:  # noqa: N802  Windows names it
+        at = ctypes.addressof(header.contents)
         assert at in self.prepared
         self.queue.append(at)
         self.most_queued = max(self.most_queued, len(self.queue))
@@ -49,18 +49,18 @@ class Winmm:
             self._play()
         return 0
 
-    def waveOutUnprepareHeader(self, device: Any, header: Any, size: int) -> int:  # noqa: N802  Windows' name
-        at = ctypes.addressof(header._obj)
+    def waveOutUnprepareHeader(self, device: Any, header: Any, size: int) -> int:  # noqa: N802  Windows names it
+        at = ctypes.addressof(header.contents)
         assert struct.unpack("<I", ctypes.string_at(at + 24, 4))[0] & DONE  # never while it is played
         self.prepared.remove(at)
         return 0
 
-    def waveOutReset(self, device: Any) -> int:  # noqa: N802  Windows' name
+    def waveOutReset(self, device: Any) -> int:  # noqa: N802  Windows names it
         while self.queue:
             ctypes.memmove(self.queue.pop(0) + 24, struct.pack("<I", DONE), 4)
         return 0
 
-    def waveOutClose(self, device: Any) -> int:  # noqa: N802  Windows' name
+    def waveOutClose(self, device: Any) -> int:  # noqa: N802  Windows names it
         assert self.prepared == set()
         self.is_open = False
         return 0
