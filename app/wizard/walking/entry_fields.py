@@ -61,8 +61,8 @@ class EntryFields(QWidget):
         every: list[QWidget] = [self.parts, *self.steppers.values(), self.words, *switches]
         for one in every:
             one.setParent(self)  # what is shown without one is a window, and takes the keys
-        for before, after in pairwise(self.tab_order):
-            QWidget.setTabOrder(before, after)
+        for first, second in pairwise(self.tab_order):
+            QWidget.setTabOrder(first, second)
         self._connect()
         self._arrange()
 
