@@ -7,6 +7,7 @@ from app.results.compared_words import is_judged
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
 from app.summary.measures import FITTED
+from app.summary.prosthesis_fitting import OF_BOTH, OF_PROSTHETIC, OF_SOUND
 from app.summary.what_stands_out import FAMILIES
 from app.widgets.chip import leg_name
 from app.wording.body import name_of
@@ -16,9 +17,6 @@ from core.body import Joint, JointKind, Side
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
 
-OF_PROSTHETIC = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_rocker_deg", "stance_percent")
-OF_SOUND = ("knee_stance_to_swing_deg", "ankle_push_off_deg", "stance_percent")
-OF_BOTH = ("speed_m_s", "cadence_steps_min")
 LENGTH = "stride_length_m"
 STRIDES_GATE = "strides"  # what is short of them is called provisional
 MOST_OTHERS, MOST_OTHERS_OF_SOUND = 3, 1  # there is room for no more
