@@ -47,6 +47,7 @@ class TimedControl(QObject):
         self.earlier.changed.connect(self.changed)
         self.protocol: TimedProtocol | None = None
         self._courses_m: dict[TimedProtocol, float | None] = {}  # as entered
+        self._corrected: PlannedTest | None = None  # until it is stored
         self.is_course_wrong = False  # what was typed is no length
         self._estimator: WalkingEstimator | None = None
         self._live: LiveTest | None = None
@@ -194,6 +195,7 @@ class TimedControl(QObject):
     def correct(self, planned: PlannedTest) -> None:
         """Take what was entered of the latest test after it."""
         walk = self._visit.recordings.walks[-1]
+        self._corrected = planned
         self._visit.recordings.change(walk, lambda reported: replace(reported, test=planned))
 
     @property
@@ -246,6 +248,9 @@ class TimedControl(QObject):
     def _on_recordings_changed(self) -> None:
         """A recording that was refused, or that a full disk has ended, ends the test too."""
         recordings = self._visit.recordings
+        if self._corrected is not None and recordings.walks and recordings.walks[-1].details.test == self._corrected:
+            self._corrected = None
+            self._visit.evaluate_if_stale()
         if self._live is not None and (recordings.is_stopping or not recordings.is_recording):
             self.end()
             self.changed.emit()

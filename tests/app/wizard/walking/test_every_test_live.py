@@ -16,7 +16,7 @@ from app.wizard.walking.timed_result import TimedResultView
 from core.body import LEG_SITES, Site
 from core.session import Patient, RecordingKind
 from core.timed.found import TimedTest
-from core.timed.protocols import TimedProtocol
+from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.replay import DEMONSTRATION_NAMES
 from devices.simulation.walker import FreeMotion, Standing, Tissue, WalkerSettings
@@ -134,8 +134,7 @@ def test_a_course_of_another_length_is_not_valid_until_the_length_is_put_right(
     QTest.keyClick(field, Qt.Key.Key_Return)
     assert not field.hasFocus()
     assert led(qtbot, step, visit, TimedProtocol.UP_AND_GO).is_valid
-    assert visit.recordings.walks[-1].details.test is not None
-    assert visit.recordings.walks[-1].details.test.course_m == 3.0
+    assert visit.recordings.walks[-1].details.test == PlannedTest(TimedProtocol.UP_AND_GO)
     view = step.page.timed_result
     for typed, is_valid in (("6", False), ("3", True)):
         view.entry.length.line_edit.setFocus()
