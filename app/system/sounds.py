@@ -48,13 +48,15 @@ class Loudspeaker(QObject):
     Of several that are asked for while another sounds only the latest is kept: an old one would report what is over.
     Only the tick of a metronome takes no other's place: it signals nothing that the next one does not. A spoken phrase
     waits for the tones, and is cut off by whatever comes next: a tone marks an instant, and a new phrase is what holds.
+
+    `has_output`: whether the last tone could be played; True before the first.
     """
 
     _not_received = Signal()
 
     def __init__(self, players: Sequence[Sequence[str]] = PLAYERS) -> None:
         super().__init__()
-        self.is_on = True
+        self.is_on = self.has_output = True
         self._players = [list(player) for player in players]
         self._waits = Condition()
         self._tone: Sound | None = None  # what comes next
@@ -96,7 +98,9 @@ class Loudspeaker(QObject):
                     self._phrase = ""
             if tone is None:
                 self._is_received(f"spoken/{phrase}", self._has_more)
-            elif not self._is_received(tone):
+                continue
+            self.has_output = self._is_received(tone)
+            if not self.has_output and tone is not Sound.TICK:  # nobody walks to the beeps of a desktop
                 with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
                     self._not_received.emit()
 
@@ -131,6 +135,11 @@ def speak(phrase: str) -> None:
 
 def is_on() -> bool:
     return _loudspeaker.is_on
+
+
+def has_output() -> bool:
+    """Whether sounds are audible here, as far as any was played yet."""
+    return _loudspeaker.has_output
 
 
 def set_on(is_on: bool) -> None:

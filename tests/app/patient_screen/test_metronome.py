@@ -1,80 +1,207 @@
-"""The metronome against a clock that the test moves: no drift, no burst, nothing after it was stopped."""
+"""What the metronome sends to the sound device, found in its samples; and that it reports where nothing plays them."""
 
-from collections.abc import Iterator
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
+import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.patient_screen.metronome import LATE_S, Metronome
+from app.patient_screen.metronome import Metronome
+from app.system import sounds
+from app.system.audio_stream import RATE_HZ, AudioStream, PipedPlayer, SoundOutlet
+from app.system.sounds import Loudspeaker
+from core.samples import FloatArray
+from tests.app.patient_screen.sound_detection import onsets_s
+
+MOST_OFF_S = 0.002
+REFUSES = [sys.executable, "-c", "import sys; sys.exit(1)"]
 
 
-class Clock:
-    def __init__(self) -> None:
-        self.now_s = 1000.0
-        self.ticks_s: list[float] = []
+class Device:
+    """A sound device that plays as fast as it is given, and notes every sample; it stops the metronome's thread at
+    `seconds` until it is given more of them."""
 
-    def tick(self) -> None:
-        self.ticks_s.append(self.now_s - 1000.0)
+    def __init__(self, seconds: float) -> None:
+        self.samples = bytearray()
+        self.most = round(2 * RATE_HZ * seconds)
+        self.is_over = False
+
+    def write(self, samples: bytes) -> None:
+        while len(self.samples) >= self.most and not self.is_over:
+            time.sleep(0.001)
+        self.samples += samples
+
+    def fall_silent(self) -> None:
+        self.is_over = True
+
+    def close(self) -> None:
+        self.is_over = True
+
+    @property
+    def is_full(self) -> bool:
+        return len(self.samples) >= self.most
+
+    @property
+    def played(self) -> FloatArray:
+        return np.frombuffer(bytes(self.samples), "<i2").astype(float)
+
+
+def playing_to(*ways: Callable[[], SoundOutlet]) -> Callable[[Callable[[int], bytes], Callable[[], None]], AudioStream]:
+    return lambda read, failed: AudioStream(read, failed, ways)
 
 
 @pytest.fixture
-def clock() -> Clock:
-    return Clock()
+def made(qtbot: QtBot) -> Iterator[list[Metronome]]:
+    made: list[Metronome] = []
+    yield made
+    for one in made:
+        one.stop()
 
 
-@pytest.fixture
-def metronome(qtbot: QtBot, clock: Clock) -> Iterator[Metronome]:
-    metronome = Metronome(now_s=lambda: clock.now_s, tick=clock.tick)
-    yield metronome
-    metronome.stop()
-
-
-def test_timers_that_are_late_each_time_do_not_add_up(metronome: Metronome, clock: Clock) -> None:
-    metronome.start(120)
-    for k in range(1, 1201):  # ten minutes, looked at 1 to 20 ms late
-        clock.now_s = 1000.0 + 0.5 * k + 0.001 + 0.019 * (k % 7) / 6
-        metronome.look()
-    assert len(clock.ticks_s) == 1201
-    assert all(0.0 <= at_s - 0.5 * k <= 0.021 for k, at_s in enumerate(clock.ticks_s))
-
-
-def test_looking_too_early_or_twice_ticks_once(metronome: Metronome, clock: Clock) -> None:
-    metronome.start(60)
-    for at_s in (0.0, 0.4, 0.999, 1.0, 1.001, 1.5):
-        clock.now_s = 1000.0 + at_s
-        metronome.look()
-    assert clock.ticks_s == [0.0, 1.0]
-
-
-def test_what_the_program_was_too_busy_for_is_left_out_and_the_next_is_in_time(
-    metronome: Metronome, clock: Clock
+def test_what_is_sent_to_the_device_clicks_at_the_set_cadence_without_drift(
+    qtbot: QtBot, made: list[Metronome]
 ) -> None:
-    metronome.start(60)
-    for at_s in (3.0 + LATE_S + 0.01, 4.0):
-        clock.now_s = 1000.0 + at_s
-        metronome.look()
-    assert clock.ticks_s == [0.0, 4.0]
-
-
-def test_it_is_silent_once_stopped_and_begins_again(metronome: Metronome, clock: Clock) -> None:
-    metronome.start(60)
+    device = Device(600.0)
+    metronome = Metronome(play=playing_to(lambda: device))
+    made.append(metronome)
+    metronome.start(103)
+    qtbot.waitUntil(lambda: device.is_full, timeout=60_000)
     metronome.stop()
-    clock.now_s += 5.3
-    metronome.look()
-    assert clock.ticks_s == [0.0]
+    found_s = onsets_s(device.played[: 600 * RATE_HZ], RATE_HZ)
+    assert len(found_s) == 1030
+    assert np.abs(found_s - found_s[0] - 60.0 / 103 * np.arange(1030)).max() < MOST_OFF_S
+
+
+def test_a_new_cadence_goes_into_the_same_stream_and_no_click_is_doubled(qtbot: QtBot, made: list[Metronome]) -> None:
+    device = Device(5.3)
+    metronome = Metronome(play=playing_to(lambda: device))
+    made.append(metronome)
+    metronome.start(60)
+    qtbot.waitUntil(lambda: device.is_full)
     metronome.start(100)
-    assert metronome.beats_per_min == 100
-    assert clock.ticks_s == [0.0, pytest.approx(5.3)]
-
-
-def test_a_rate_nobody_walks_at_is_refused(metronome: Metronome) -> None:
-    with pytest.raises(ValueError, match="expected 30 to 200"):
-        metronome.start(10)
-
-
-def test_its_timer_ticks(qtbot: QtBot) -> None:
-    ticks: list[int] = []
-    metronome = Metronome(tick=lambda: ticks.append(1))
-    metronome.start(200)
-    qtbot.waitUntil(lambda: len(ticks) >= 2, timeout=2000)
+    device.most += 2 * RATE_HZ * 10
+    qtbot.waitUntil(lambda: device.is_full)
     metronome.stop()
+    gaps_s = np.diff(onsets_s(device.played, RATE_HZ))
+    assert gaps_s.min() > 0.6 - MOST_OFF_S
+    assert gaps_s.max() < 1.0 + MOST_OFF_S
+    assert np.abs(gaps_s[6:] - 0.6).max() < MOST_OFF_S
+
+
+def test_the_bell_makes_it_silent_and_the_clicks_after_it_are_in_time(qtbot: QtBot, made: list[Metronome]) -> None:
+    device = Device(4.5)
+    metronome = Metronome(play=playing_to(lambda: device))
+    made.append(metronome)
+    metronome.start(60)
+    qtbot.waitUntil(lambda: device.is_full)
+    sounds.set_on(False)
+    try:
+        device.most += 2 * RATE_HZ * 4
+        qtbot.waitUntil(lambda: device.is_full)
+    finally:
+        sounds.set_on(True)
+    device.most += 2 * RATE_HZ * 4
+    qtbot.waitUntil(lambda: device.is_full)
+    metronome.stop()
+    found_s = onsets_s(device.played, RATE_HZ)
+    assert len(found_s) in (9, 10)
+    assert np.abs(found_s - found_s[0] - np.round(found_s - found_s[0])).max() < MOST_OFF_S
+    assert np.diff(found_s).max() == pytest.approx(5.0, abs=MOST_OFF_S)
+
+
+def test_a_player_beside_the_program_is_given_the_same_samples(
+    qtbot: QtBot, made: list[Metronome], tmp_path: Path
+) -> None:
+    file = tmp_path / "played"
+    takes = f"import sys; open({str(file)!r}, 'wb').write(sys.stdin.buffer.read({20 * 2 * RATE_HZ}))"
+    player = [sys.executable, "-c", takes]
+    metronome = Metronome(play=playing_to(lambda: PipedPlayer(["no-such-player"]), lambda: PipedPlayer(player)))
+    made.append(metronome)
+    metronome.start(120)
+    qtbot.waitUntil(lambda: file.exists() and file.stat().st_size == 20 * 2 * RATE_HZ, timeout=20_000)
+    found_s = onsets_s(np.frombuffer(file.read_bytes(), "<i2").astype(float), RATE_HZ)
+    assert len(found_s) == 40
+    assert np.abs(np.diff(found_s) - 0.5).max() < MOST_OFF_S
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows keeps no ended process for the one that started it")
+def test_it_stops_at_once_and_leaves_no_player_behind(qtbot: QtBot, made: list[Metronome], tmp_path: Path) -> None:
+    number = tmp_path / "number"
+    waits = f"import os, time; print(os.getpid(), file=open({str(number)!r}, 'w'), flush=True); time.sleep(600)"
+    metronome = Metronome(play=playing_to(lambda: PipedPlayer([sys.executable, "-c", waits])))
+    made.append(metronome)
+    metronome.start(60)
+    qtbot.waitUntil(lambda: number.exists() and number.read_text().endswith("\n"))
+    metronome.stop()
+    assert metronome.beats_per_min == 0
+    qtbot.waitUntil(lambda: is_gone(int(number.read_text())))
+
+
+def is_gone(process: int) -> bool:
+    """Return whether nothing is left of a process; one that ended and was not waited for is still there."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return True
+    return False
+
+
+def test_without_a_sound_device_it_is_silent_and_states_so(
+    qtbot: QtBot, made: list[Metronome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nothing = Loudspeaker([REFUSES])
+    monkeypatch.setattr(sounds, "_loudspeaker", nothing)
+    metronome = Metronome(play=playing_to(lambda: PipedPlayer(REFUSES)))
+    made.append(metronome)
+    assert not metronome.is_silent
+    metronome.start(200)
+    qtbot.waitUntil(lambda: metronome.is_silent)
+    assert metronome.beats_per_min == 200
+    metronome.stop()
+    assert not metronome.is_silent
+
+
+def test_where_no_stream_can_be_played_it_ticks_one_by_one(
+    qtbot: QtBot, made: list[Metronome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ticks: list[str] = []
+    monkeypatch.setattr(sounds, "play", ticks.append)
+    monkeypatch.setattr(sounds, "has_output", lambda: True)
+    metronome = Metronome(play=playing_to())
+    made.append(metronome)
+    metronome.start(200)
+    qtbot.waitUntil(lambda: len(ticks) >= 2)
+    assert not metronome.is_silent
+    metronome.start(30)  # goes over to it
+    assert metronome.beats_per_min == 30
+
+
+def test_a_stream_that_was_stopped_meanwhile_starts_no_ticks(
+    qtbot: QtBot, made: list[Metronome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ticks: list[str] = []
+    monkeypatch.setattr(sounds, "play", ticks.append)
+    failing: list[Callable[[], None]] = []
+
+    def never(read: Callable[[int], bytes], failed: Callable[[], None]) -> AudioStream:
+        failing.append(failed)
+        return AudioStream(read, lambda: None, ())
+
+    metronome = Metronome(play=never)
+    made.append(metronome)
+    metronome.start(60)
+    metronome.stop()
+    metronome.start(90)
+    failing[0]()
+    with qtbot.waitSignal(metronome.changed):
+        failing[1]()  # comes after the other
+    assert len(ticks) == 1
+
+
+def test_a_rate_nobody_walks_at_is_refused() -> None:
+    with pytest.raises(ValueError, match="expected 30 to 200"):
+        Metronome(play=playing_to()).start(10)
