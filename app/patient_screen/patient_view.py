@@ -15,8 +15,10 @@ NO_VALUE = "\N{EN DASH}"
 class PatientView:
     """`last` are the values of the last strides, SHOWN_STRIDES at most, the newest last.
 
-    `is_waiting`: what is aimed at cannot be measured now, so no value is shown, old ones neither. `steps`: of the walk
-    that goes on, as the operator sees them; None between walks.
+    `is_waiting`: what is aimed at cannot be measured now, so no value is shown, old ones neither. `is_standing`: the
+    patient is, so the last stride is over; while somebody walks it stays until the next. `has_sound`: whether a tone is
+    audible where the target is reached. `steps`: of the walk that goes on, as the operator sees them; None between
+    walks.
     """
 
     target: Target | None = None
@@ -24,23 +26,28 @@ class PatientView:
     is_waiting: bool = False
     has_sound: bool = True
     steps: int | None = None
+    is_standing: bool = False
 
     @property
     def value(self) -> int | None:
-        """Of the last stride."""
-        return self.last[-1] if self.last and not self.is_waiting else None
+        """Of the last stride, until the next or until the patient is standing."""
+        return self.last[-1] if self.last and not self.is_waiting and not self.is_standing else None
 
     @property
     def in_words(self) -> str:
         """All of it, for who cannot see it."""
         if self.target is None:
-            return tr("One moment") if self.steps is None else f"{self.steps} {so_far_words(self.steps)}"
+            is_counted = self.steps is not None and not self.is_waiting
+            return f"{self.steps} {so_far_words(self.steps or 0)}" if is_counted else tr("One moment")
         stated = [f"{title_of(self.target)}."]
         stated.append(tr("Target {value}.").format(value=figure(self.target.value, self.target.measure)))
         if self.is_waiting:
             return " ".join([*stated, tr("One moment")])
-        if self.value is not None:
+        if self.is_standing:
+            stated.append(f"{next_step_words()}.")
+        elif self.value is not None:
             stated.append(tr("Now {value}.").format(value=figure(self.value, self.target.measure)))
+        if self.last:
             stated.append(f"{steps_words(len(self.last))}: {reached_words(self)}.")
         return " ".join(stated)
 
@@ -74,6 +81,11 @@ def figure(value: int, measure: TargetMeasure) -> str:
     if measure in (TargetMeasure.KNEE_SWING_PEAK, TargetMeasure.FOOT_STRIKE):
         return f"{number}°"
     return f"{number}\N{NO-BREAK SPACE}%" if measure is TargetMeasure.STANCE_RATIO else number
+
+
+def next_step_words() -> str:
+    """In the place of a value while the patient is standing."""
+    return tr("Waiting for the next step")
 
 
 def so_far_words(count: int) -> str:

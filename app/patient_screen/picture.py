@@ -14,6 +14,7 @@ from app.patient_screen.patient_view import (
     SHOWN_STRIDES,
     PatientView,
     figure,
+    next_step_words,
     reached_words,
     so_far_words,
     steps_words,
@@ -45,6 +46,23 @@ MIDDLE, AT_LEFT, AT_RIGHT = (
 )
 
 
+SMALL_BELOW = 0.6  # of the scale: in a corner of the clinician's screen small letters could not be read
+
+
+class _Sizes(NamedTuple):
+    """What is larger, or left out, where all else is small."""
+
+    is_small: bool
+    chip: float
+    title: float
+    word: float
+    target: float
+    note: float
+
+
+USUAL, IN_CORNER = _Sizes(False, 56, 40, 40, 96, 22), _Sizes(True, 84, 62, 60, 110, 40)
+
+
 class _Inks(NamedTuple):
     """What a leg's bar is drawn with; of both legs together in the ink of the text, for no hue is theirs."""
 
@@ -63,29 +81,30 @@ def paint_patient_view(painter: QPainter, room: QRectF, view: PatientView) -> No
     painter.translate(room.center())
     painter.scale(scale, scale)
     painter.translate(-WIDTH / 2, -HEIGHT / 2)
-    if view.target is None and view.steps is None:
+    if view.target is None and (view.steps is None or view.is_waiting):
         _text(painter, theme, QRectF(0, 0, WIDTH, HEIGHT), tr("One moment"), 96, flags=MIDDLE)
     elif view.target is None:
         _text(painter, theme, QRectF(0, 190, WIDTH, 300), str(view.steps), 320, flags=MIDDLE)
         _text(painter, theme, QRectF(LEFT, 520, RIGHT - LEFT, 80), so_far_words(view.steps or 0), 64, flags=MIDDLE)
     else:
-        _paint(painter, view, view.target, theme)
+        _paint(painter, view, view.target, theme, IN_CORNER if scale < SMALL_BELOW else USUAL)
     painter.restore()
 
 
-def _paint(painter: QPainter, view: PatientView, target: Target, theme: Theme) -> None:
+def _paint(painter: QPainter, view: PatientView, target: Target, theme: Theme, sizes: _Sizes) -> None:
     inks = _inks(target.side, theme)
-    _paint_heading(painter, view, target, theme)
-    if view.is_waiting:
-        _text(painter, theme, QRectF(LEFT, 170, 620, 180), tr("One moment"), 80)
+    _paint_heading(painter, view, target, theme, sizes)
+    if view.is_waiting or view.is_standing:
+        words = tr("One moment") if view.is_waiting else next_step_words()
+        _paint_words(painter, theme, QRectF(LEFT, 160, 510, 200), words)
     else:
         shown = NO_VALUE if view.value is None else figure(view.value, target.measure)
         _text(painter, theme, QRectF(LEFT, 150, 560, 216), shown, 240 if len(shown) <= 3 else 184, fits=True)
-    _paint_target(painter, target, theme)
-    _paint_bar(painter, view, target, theme, inks)
+    _paint_target(painter, target, theme, sizes)
+    _paint_bar(painter, view, target, theme, inks, sizes)
     painter.fillRect(QRectF(LEFT, 612, RIGHT - LEFT, 1), QColor(theme.colours.line))
     if not view.is_waiting:
-        _paint_last(painter, view, target, theme, inks)
+        _paint_last(painter, view, target, theme, inks, sizes)
 
 
 def _inks(side: Side | None, theme: Theme) -> _Inks:
@@ -95,39 +114,55 @@ def _inks(side: Side | None, theme: Theme) -> _Inks:
     return _Inks(theme.curve(side), theme.pale(side), theme.soft(side))
 
 
-def _paint_heading(painter: QPainter, view: PatientView, target: Target, theme: Theme) -> None:
+def _paint_heading(painter: QPainter, view: PatientView, target: Target, theme: Theme, sizes: _Sizes) -> None:
     left = LEFT
     if target.side is not None:
         painter.save()
-        painter.translate(LEFT, 64)
-        painter.scale(56 / CHIP, 56 / CHIP)
+        painter.translate(LEFT, 92 - sizes.chip / 2)
+        painter.scale(sizes.chip / CHIP, sizes.chip / CHIP)
         paint_chip(painter, QRectF(0, 0, CHIP, CHIP), target.side, theme)
         painter.restore()
-        left += 80
-    tone, ink2 = tone_words(target), theme.colours.ink2
-    if not view.has_sound:
-        tone = tr("sound off")
-    width = QFontMetricsF(theme.font(22)).horizontalAdvance(tone)
-    _text(painter, theme, QRectF(RIGHT - width - 2, 64, width + 2, 56), tone, 22, "ink2", weight=MEDIUM, flags=AT_RIGHT)
-    icon = Icon.SOUND if view.has_sound else Icon.SOUND_OFF
-    paint_icon(painter, icon, QRectF(RIGHT - width - 52, 75, 34, 34), ink2)
-    room = QRectF(left, 64, RIGHT - width - 76 - left, 56)
-    _text(painter, theme, room, title_of(target), 40, fits=True)
+        left += round(sizes.chip) + 24
+    tone = tone_words(target) if view.has_sound else tr("sound off")
+    width = QFontMetricsF(theme.font(sizes.note)).horizontalAdvance(tone) + 2
+    if sizes.is_small:  # the icon says it
+        width = 0.0
+    else:
+        box = QRectF(RIGHT - width, 64, width, 56)
+        _text(painter, theme, box, tone, sizes.note, "ink2", weight=MEDIUM, flags=AT_RIGHT)
+    icon, side = Icon.SOUND if view.has_sound else Icon.SOUND_OFF, sizes.note + 12
+    paint_icon(painter, icon, QRectF(RIGHT - width - side - 14, 92 - side / 2, side, side), theme.colours.ink2)
+    room = QRectF(left, 64, RIGHT - width - side - 38 - left, 56)
+    _text(painter, theme, room, title_of(target), sizes.title, fits=True)
 
 
-def _paint_target(painter: QPainter, target: Target, theme: Theme) -> None:
+def _paint_words(painter: QPainter, theme: Theme, box: QRectF, words: str, most: float = 80, tone: str = "ink") -> None:
+    """In as many lines as they need, `most` px large or as large as they have room."""
+    flags, size = int(AT_LEFT.value) | Qt.TextFlag.TextWordWrap.value, most
+    while size > 8:
+        found = QFontMetricsF(theme.font(size, SEMIBOLD)).boundingRect(box, flags, words)
+        if found.width() <= box.width() and found.height() <= box.height():
+            break
+        size -= 2
+    painter.setFont(theme.font(size, SEMIBOLD))
+    painter.setPen(QColor(getattr(theme.colours, tone)))
+    painter.drawText(box, flags, words)
+
+
+def _paint_target(painter: QPainter, target: Target, theme: Theme, sizes: _Sizes) -> None:
     at = _x(target, target.value)
-    _text(painter, theme, QRectF(at - 180, 205, 360, 44), tr("Target"), 40, "ink2", weight=MEDIUM, flags=MIDDLE)
+    label = QRectF(at - 180, 236 - sizes.word, 360, sizes.word + 6)
+    _text(painter, theme, label, tr("Target"), sizes.word, "ink2", weight=MEDIUM, flags=MIDDLE)
     shown = figure(target.value, target.measure)
-    _text(painter, theme, QRectF(at - 180, 248, 360, 98), shown, 96, flags=MIDDLE, fits=True)
+    _text(painter, theme, QRectF(at - 180, 248, 360, 98), shown, sizes.target, flags=MIDDLE, fits=True)
     words = unit_words(target.measure)
     if words:
-        half = 0.5 * min(QFontMetricsF(theme.font(96, SEMIBOLD)).horizontalAdvance(shown), 360.0)
+        half = 0.5 * min(QFontMetricsF(theme.font(sizes.target, SEMIBOLD)).horizontalAdvance(shown), 360.0)
         left = at + max(130.0, half + 16.0)
-        _text(painter, theme, QRectF(left, 280, RIGHT - left, 66), words, 22, "ink2", flags=AT_LEFT, fits=True)
+        _paint_words(painter, theme, QRectF(left, 236, RIGHT - left, 132), words, sizes.note, "ink2")
 
 
-def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks) -> None:
+def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks, sizes: _Sizes) -> None:
     c, at = theme.colours, _x(target, target.value)
     frame = QPainterPath()
     frame.addRoundedRect(BAR, 14, 14)
@@ -150,9 +185,10 @@ def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Them
         x, shown = _x(target, value), figure(value, target.measure)
         if abs(x - at) < 24:
             continue  # the line of the target is there
-        width = QFontMetricsF(theme.font(22, MEDIUM)).horizontalAdvance(shown) + 2
+        width = QFontMetricsF(theme.font(sizes.note, MEDIUM)).horizontalAdvance(shown) + 2
         left = min(max(x - width / 2, BAR.left()), BAR.right() - width)
-        _text(painter, theme, QRectF(left, 553, width, 32), shown, 22, "ink2", weight=MEDIUM, flags=MIDDLE)
+        box = QRectF(left, 553, width, sizes.note + 10)
+        _text(painter, theme, box, shown, sizes.note, "ink2", weight=MEDIUM, flags=MIDDLE)
 
 
 def _paint_hatch(painter: QPainter, box: QRectF, colour: QColor) -> None:
@@ -166,11 +202,12 @@ def _paint_hatch(painter: QPainter, box: QRectF, colour: QColor) -> None:
     painter.restore()
 
 
-def _paint_last(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks) -> None:
+def _paint_last(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks, sizes: _Sizes) -> None:
     c = theme.colours
-    _text(painter, theme, QRectF(LEFT, 648, 380, 32), steps_words(len(view.last)), 22, weight=MEDIUM)
+    box = QRectF(LEFT, 680 - sizes.note - 10, 380, sizes.note + 10)
+    _text(painter, theme, box, steps_words(len(view.last)), sizes.note, weight=MEDIUM, fits=True)
     if view.last:
-        _text(painter, theme, QRectF(LEFT, 682, 380, 52), reached_words(view), 40, fits=True)
+        _text(painter, theme, QRectF(LEFT, 682, 380, 52), reached_words(view), sizes.word, fits=True)
     first = SHOWN_STRIDES - len(view.last)  # the newest is at the right from the first step on
     for number, value in enumerate(view.last, start=first):
         is_reached = target.is_reached(value)
@@ -182,6 +219,8 @@ def _paint_last(painter: QPainter, view: PatientView, target: Target, theme: The
         painter.drawRoundedRect(box.adjusted(1.5, 1.5, -1.5, -1.5), 7, 7)
         if is_reached:
             paint_icon(painter, Icon.CHECK, QRectF(box.center().x() - 12, STEP_BASE - 34, 24, 24), c.surface)
+        if sizes.is_small:
+            continue
         over = QRectF(box.left() - 10, box.top() - 26, STEP_WIDTH + 20, 24)
         shown, tone = str(value).replace("-", MINUS), "ink" if is_reached else "ink2"
         _text(painter, theme, over, shown, 17, tone, weight=SEMIBOLD if is_reached else MEDIUM, flags=MIDDLE)

@@ -360,6 +360,8 @@ class Wizard(QWidget):
                 self._on_undo()
             case KeyAction.HELP:
                 self.help_required.emit(step.topic)
+            case KeyAction.PATIENT_SCREEN:
+                self._show_message(tr("The patient screen opens in step 5, Walking."), "")
             case KeyAction.LARGER:
                 grow(1)
             case KeyAction.SMALLER:

@@ -258,6 +258,7 @@ class WalkingPage(QWidget):
         self.stopped.keep.clicked.connect(self._on_keep_clicked)
         self.stopped.discard.clicked.connect(self._on_discard_clicked)
         self.tabs.chosen.connect(self._arrange)
+        self.patient_controls.offered.connect(self._arrange)
 
     def _arrange(self) -> None:
         """Show what belongs to this moment."""
@@ -265,6 +266,7 @@ class WalkingPage(QWidget):
         is_recording, has_walks = self.is_recording, bool(self.rows)
         is_bench = self._has_bench and not is_recording
         is_test = self._has_test and is_recording
+        has_controls = not self.patient_controls.isHidden()  # of the patient's screen: they need the room
         is_tabbed = self._is_compact and has_walks and not is_recording
         shows_curves = has_walks and (not self._is_compact or is_recording or self.tabs.choice == "curves")
         shows_walks = not self._is_compact or (not is_recording and not (is_tabbed and shows_curves))
@@ -274,7 +276,7 @@ class WalkingPage(QWidget):
         self.bench.setVisible(is_bench)
         self.notice.setVisible(
             (self._has_message and not is_bench)
-            or (is_recording and not self._is_compact and not is_test and not self._has_memory)
+            or (is_recording and not self._is_compact and not is_test and not self._has_memory and not has_controls)
         )
         self.tabs.setVisible(is_tabbed and not is_bench)
         self.stopped.setVisible(self._asked is not None and not is_recording and shows_walks)

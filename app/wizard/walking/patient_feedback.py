@@ -6,25 +6,25 @@ and the screen's thread takes it. What was reached is counted while a walk is re
 """
 
 import contextlib
+import math
 from collections import deque
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt, Signal, Slot
+from PySide6.QtCore import QObject, Qt, QTimer, Signal, Slot
 
-from app.patient_screen.controls import ControlsCard, choices
+from app.patient_screen.controls import Choice, ControlsCard, choice_words
 from app.patient_screen.metronome import Metronome
 from app.patient_screen.patient_view import SHOWN_STRIDES, PatientView
-from app.patient_screen.window import PatientWindow
+from app.patient_screen.window import PatientWindow, Placing
 from app.system import sounds
 from app.system.sounds import Sound
+from app.wizard.losses import NOTHING, Message
+from app.wizard.walking.patient_status import hindrance, is_standing, reasons_against, status_of
 from app.wording.translation import tr
-from app.wording.verdicts import gate_sentence
-from core.body import LEG_SEGMENTS, Joint, Segment, Side, Site, knee_of
-from core.results import JointCalibration
-from core.targets import Target, TargetMeasure, TargetTally, shown_value
-from core.verdicts.live_targets import assess_target
+from core.body import Segment, Side
+from core.targets import Target, TargetTally, shown_value
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -32,31 +32,54 @@ if TYPE_CHECKING:
     from app.wizard.walking.readout import WalkingReadout
 
 
+LOOK_MS = 100
+
+
 class PatientFeedback(QObject):
-    """`run_requested`: Space was pressed on the patient's screen."""
+    """`run_requested`: Space was pressed on the patient's screen.
+
+    Parameters
+    ----------
+    look
+        Gives what the estimator gives now; None where none works.
+    """
 
     run_requested = Signal()
     _news = Signal()
 
-    def __init__(self, visit: "Visit", controls: ControlsCard, parent: QObject) -> None:
+    def __init__(
+        self,
+        visit: "Visit",
+        controls: ControlsCard,
+        parent: QObject,
+        look: "Callable[[], WalkingReadout | None]" = lambda: None,
+    ) -> None:
         super().__init__(parent)
-        self._visit, self._controls = visit, controls
+        self._visit, self._controls, self._look_now = visit, controls, look
+        self._placing = Placing()
         self.window: PatientWindow | None = None
         self.target: Target | None = None
         self.metronome = Metronome(self)
         self._estimator: WalkingEstimator | None = None
         self._seen = 0  # of the estimator's values
         self._last: deque[int] = deque(maxlen=SHOWN_STRIDES)
-        self._is_waiting = False
+        self._has_tone = True
+        self._is_waiting = self._is_standing = False
+        self._hindered: Message = NOTHING
+        self._lost: Choice | None = None  # what was aimed at, and can no longer be
+        self._timer = QTimer(self)  # its own: pages over the wizard stop that one's, and the patient looks on
+        self._timer.setInterval(LOOK_MS)
+        self._timer.timeout.connect(self.look)
         self._steps: int | None = None  # of the walk that goes on
         self._counted: dict[Target, TargetTally] | None = None  # while a walk is recorded
         self._news.connect(self._on_news, Qt.ConnectionType.QueuedConnection)
         controls.target_set.connect(self._on_target_set)
+        controls.tone_set.connect(self._on_tone_set)
         controls.metronome_pressed.connect(self._on_metronome_pressed)
         controls.full.clicked.connect(self.toggle_full_screen)
         controls.close_screen.clicked.connect(self.close)
         self.metronome.changed.connect(self._on_metronome_changed)
-        controls.setVisible(False)
+        controls.offer(False)
 
     @property
     def is_open(self) -> bool:
@@ -65,7 +88,8 @@ class PatientFeedback(QObject):
     @property
     def view(self) -> PatientView:
         """What the patient is shown."""
-        return PatientView(self.target, tuple(self._last), self._is_waiting, sounds.is_on(), self._steps)
+        has_sound = self._has_tone and sounds.is_on() and sounds.has_output()
+        return PatientView(self.target, tuple(self._last), self._is_waiting, has_sound, self._steps, self._is_standing)
 
     def toggle(self) -> None:
         """Open the patient's screen, with its controls on the page; or close both."""
@@ -73,27 +97,33 @@ class PatientFeedback(QObject):
             self.close()
             return
         self.show_reasons()
-        window = self.window = PatientWindow()
+        window = self.window = PatientWindow(self._placing)
         window.closed.connect(self.close)
         window.run_requested.connect(self.run_requested)
-        self._controls.setVisible(True)
+        self._controls.offer(True)
         self._controls.focus()
-        window.show_view(self.view)
+        self.look()
+        window.placed.connect(self._controls.show_full)
         window.open_beside(self._controls.window())
+        self._timer.start()
 
     @Slot()
     def close(self) -> None:
         """Close the patient's screen and its controls; the metronome falls silent. The target stays."""
         window, self.window = self.window, None
         self.metronome.stop()
+        self._timer.stop()
         if window is not None:
             window.close()
             window.deleteLater()
-            self._controls.setVisible(False)
+            self._controls.offer(False)
 
     @Slot()
     def toggle_full_screen(self) -> None:
-        if self.window is not None:
+        if self.window is None:
+            self._placing.ask_for_full()
+            self.toggle()
+        else:
             self.window.toggle_full_screen()
 
     def watch(self, estimator: "WalkingEstimator | None") -> None:
@@ -133,15 +163,32 @@ class PatientFeedback(QObject):
         reasons = reasons_against(
             tuple(sensors.sensor_at), rested, self._visit.calibration, self._visit.prosthetic_sides
         )
+        was = self.target
         self._controls.show_reasons(reasons)
+        if was is not None and self.target is None and (was.measure, was.side) in reasons:
+            self._lost, self._is_waiting = (was.measure, was.side), True
+        elif self._lost is not None and self._lost not in reasons:
+            self._lost, self._is_waiting = None, False
+
+    @Slot()
+    def look(self) -> None:
+        """Look what can be measured at this moment, and say it to the patient and to the clinician."""
+        view = self._look_now()
+        if view is not None and not math.isnan(view.now_s):
+            self.judge(view)
+        self._show()
+        self._show_status(view)
 
     def judge(self, view: "WalkingReadout") -> None:
-        """Look whether what is aimed at can be measured at this moment."""
-        is_waiting = self.target is not None and _is_gated(self.target, view, self._visit.sensors.site_of.values())
+        """Look whether what is aimed at can be measured at this moment, and whether the patient is standing."""
+        self._is_standing = is_standing(view)
+        if self.target is None:
+            return
+        self._hindered = hindrance(self.target, view, self._visit.sensors.site_of.values())
+        is_waiting = self._hindered != NOTHING
         if is_waiting != self._is_waiting:
             self._is_waiting = is_waiting
             self._last.clear()  # a slip is found later than it happens, so what came before is in doubt too
-        self._show()
 
     def _show_news(self) -> None:
         """Called by the estimator's thread."""
@@ -166,7 +213,7 @@ class PatientFeedback(QObject):
     def _take(self, target: Target, shown: int) -> None:
         self._last.append(shown)
         is_reached = target.is_reached(shown)
-        if is_reached:
+        if is_reached and self._has_tone:
             sounds.play(Sound.REACHED)
         if self._counted is not None:
             so_far = self._counted.get(target, TargetTally(target, 0, 0))
@@ -176,13 +223,46 @@ class PatientFeedback(QObject):
         if self.window is not None:
             self.window.show_view(self.view)
 
+    def _show_status(self, view: "WalkingReadout | None") -> None:
+        """Say to the clinician what the patient sees, or why it is nothing."""
+        if self._visit.sensors.are_in_memory:
+            what = tr("The sensors store the walk themselves.")
+            then = tr("The patient sees no values. Press Record walks live to show them.")
+        elif view is None or math.isnan(view.now_s):
+            what, then = tr("No sensor data."), tr("Values appear when the sensors are connected.")
+        elif self._controls.reason:
+            what, then = tr("This movement cannot be a target now."), ""
+        elif self._lost is not None:
+            what = tr("{movement}: no longer a target.").format(movement=choice_words(self._lost))
+            then = tr("The patient is asked to wait. Choose another movement, or type a target again.")
+        else:
+            what, then = status_of(self.view, self._hindered, is_recording=self._counted is not None)
+        is_hindered = self._hindered != NOTHING and self._counted is not None
+        self._controls.show_status(what, then, is_caution=is_hindered or self._lost is not None)
+        self._controls.show_sound(*self._sound_message())
+
+    def _sound_message(self) -> Message:
+        if not (self._has_tone or self.metronome.beats_per_min):
+            return NOTHING
+        if not sounds.is_on():
+            return tr("Sounds are off."), tr("Turn them on in Settings, or with the bell while a walk is recorded.")
+        if self.metronome.is_silent or not sounds.has_output():
+            what = tr("No sound output was found.")
+            return what, tr("Tone and metronome are silent. Connect a loudspeaker, then restart Gaitwright.")
+        return NOTHING
+
     @Slot(object)
     def _on_target_set(self, target: Target | None) -> None:
         if target != self.target:
             self.target = target
             self._last.clear()
-            self._is_waiting = False
-            self._show()
+            self._is_waiting, self._hindered, self._lost = False, NOTHING, None
+            self.look()
+
+    @Slot(bool)
+    def _on_tone_set(self, has_tone: bool) -> None:
+        self._has_tone = has_tone
+        self.look()
 
     @Slot(int)
     def _on_metronome_pressed(self, beats_per_min: int) -> None:
@@ -194,52 +274,4 @@ class PatientFeedback(QObject):
     @Slot()
     def _on_metronome_changed(self) -> None:
         self._controls.show_metronome(self.metronome.beats_per_min)
-
-
-def reasons_against(
-    worn: tuple[Site, ...],
-    rested: Collection[Site],
-    calibration: Mapping[Joint, JointCalibration],
-    prosthetic_sides: frozenset[Side],
-) -> dict[tuple[TargetMeasure, Side | None], str]:
-    """Give the reason why each measure cannot be a target; `rested`: sites whose sensor's bias is known."""
-    reasons = {}
-    for measure, side in choices():
-        found = assess_target(measure, side, worn, calibration, prosthetic_sides)
-        if not found.is_reported:
-            sentences = [gate_sentence(reason) for reason in found.reasons[:1]]
-            reasons[measure, side] = sentences[0] if sentences else _not_measured(measure, side, worn)
-        elif measure is TargetMeasure.KNEE_SWING_PEAK and side is not None:
-            knee = knee_of(side)
-            if not {knee.proximal, knee.distal} <= set(rested):
-                reasons[measure, side] = tr(
-                    "The sensors of this knee have not been still yet. Let the patient stand still first."
-                )
-    return reasons
-
-
-def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, ...]) -> str:
-    feet = {site.side for site in worn if site.segment is Segment.FOOT}
-    if measure in (TargetMeasure.CADENCE, TargetMeasure.STANCE_RATIO) and not feet:
-        return tr("There is no foot sensor.")
-    if measure is TargetMeasure.STANCE_RATIO:
-        return tr("Both feet need a sensor.")
-    if side not in feet:
-        return tr("This foot has no sensor.")
-    return tr("The knee angle is not known yet. It needs sensors on thigh and shank, and a free motion.")
-
-
-def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) -> bool:
-    """Whether a slipped strap, a silent sensor, a doubtful foot or an implausible angle makes the target unmeasured."""
-    slipped = {slip.site for slip in view.slips}
-    doubtful = slipped | set(view.missing) | set(view.doubtful)
-    feet = {Site(f"{side}_{Segment.FOOT}") for side in Side}
-    if target.side is None:
-        received = {site for site in feet if site in worn} - doubtful
-        return not received
-    if target.measure is TargetMeasure.KNEE_SWING_PEAK:
-        is_silent = bool(doubtful & {Site(f"{target.side}_{segment}") for segment in LEG_SEGMENTS})
-        return is_silent or knee_of(target.side) in view.implausible
-    if target.measure is TargetMeasure.FOOT_STRIKE:
-        return Site(f"{target.side}_{Segment.FOOT}") in doubtful
-    return bool(doubtful & feet)
+        self.look()

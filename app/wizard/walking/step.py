@@ -89,7 +89,7 @@ class WalkingStep(Step):
             page.walks.renamed.connect(self._on_renamed)
             page.walks.restrapped.clicked.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
-            self.feedback = PatientFeedback(self._visit, page.patient_controls, self)
+            self.feedback = PatientFeedback(self._visit, page.patient_controls, self, self._preview.look)
             self.feedback.run_requested.connect(self.run)
             self._preview.renewed.connect(self.feedback.watch)
         return self._page
@@ -177,16 +177,11 @@ class WalkingStep(Step):
         if self._timed.tick():
             self.stop()
         is_live = self._ongoing is not None and not self._visit.sensors.are_in_memory
-        feedback = self.feedback if self.feedback is not None and self.feedback.is_open else None
-        view = self._preview.look() if is_live or feedback is not None else None
-        if view is None:
-            return
-        if feedback is not None:
-            feedback.judge(view)
-        if is_live and self._preview.follow(view) and self._preview.shown is not None:
+        view = self._preview.look() if is_live else None
+        if view is not None and self._preview.follow(view) and self._preview.shown is not None:
             self.page.show_view(self._preview.shown)
-            if feedback is not None:
-                feedback.count(self._preview.shown.strides)
+            if self.feedback is not None:
+                self.feedback.count(self._preview.shown.strides)
 
     def bar(self) -> BarState:
         bar = WalkingBar(self, self._visit, self._next, self.bench, self._timed, self.memory)

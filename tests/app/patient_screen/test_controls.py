@@ -8,6 +8,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.patient_screen.controls import Choice, ControlsCard, choices
+from app.widgets.notice import Notice
+from app.widgets.text import Text
 from core.body import Side
 from core.targets import Target, TargetMeasure
 from tests.app.room import words_cut
@@ -48,7 +50,9 @@ def test_a_target_is_what_was_typed_for_a_measure_of_a_leg(qtbot: QtBot, card: C
     assert reported.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
 
 
-def test_enter_in_a_field_sets_what_is_typed_and_is_for_no_other(qtbot: QtBot, card: ControlsCard) -> None:
+def test_enter_sets_what_is_typed_goes_from_a_choice_to_it_and_is_for_no_other(
+    qtbot: QtBot, card: ControlsCard
+) -> None:
     received: list[int] = []
 
     class Page(QWidget):
@@ -63,11 +67,48 @@ def test_enter_in_a_field_sets_what_is_typed_and_is_for_no_other(qtbot: QtBot, c
         field.line_edit.setFocus()
         QTest.keyClicks(field.line_edit, "55")
         QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
+    for choice in (card.measure.segments[0], card.side.segments[1]):
+        choice.setFocus()
+        QTest.keyClick(choice, Qt.Key.Key_Return)
+        assert page.focusWidget() is card.target.line_edit
+        assert card.target.line_edit.selectedText() == "55"  # typing takes its place
     assert received == []
-    card.measure.segments[0].setFocus()
-    QTest.keyClick(card.measure.segments[0], Qt.Key.Key_Return)
-    assert received == [Qt.Key.Key_Return]  # a choice has no use for it
+    QTest.keyClick(card.target.line_edit, Qt.Key.Key_F7)
+    assert received == [Qt.Key.Key_F7]
     card.setParent(None)
+
+
+def test_all_of_it_is_reached_and_changed_by_keys_alone(qtbot: QtBot, card: ControlsCard) -> None:
+    targets: list[Target | None] = []
+    card.target_set.connect(targets.append)
+    card.focus()
+
+    def press(key: Qt.Key) -> None:
+        QTest.keyClick(card.focusWidget(), key)
+
+    seen = []
+    for _ in card.controls:
+        seen.append(card.focusWidget())
+        press(Qt.Key.Key_Tab)
+    chosen = [one for one in card.controls if one not in (*card.measure.segments[1:], *card.side.segments[1:])]
+    assert seen[: len(chosen)] == chosen  # arrows go on from the choice that has it
+    card.focus()
+    press(Qt.Key.Key_Right)
+    press(Qt.Key.Key_Tab)
+    press(Qt.Key.Key_Right)
+    press(Qt.Key.Key_Return)
+    QTest.keyClicks(card.focusWidget(), "12")
+    press(Qt.Key.Key_Return)
+    assert targets[-1] == Target(TargetMeasure.FOOT_STRIKE, Side.RIGHT, 12)
+    press(Qt.Key.Key_Tab)
+    with qtbot.waitSignal(card.tone_set) as tone:
+        press(Qt.Key.Key_Space)
+    assert tone.args == [False]
+    press(Qt.Key.Key_Tab)
+    QTest.keyClicks(card.focusWidget(), "96")
+    with qtbot.waitSignal(card.metronome_pressed) as rate:
+        press(Qt.Key.Key_Return)
+    assert rate.args == [96]
 
 
 @pytest.mark.usefixtures("pseudo_language")
@@ -102,24 +143,65 @@ def test_what_is_gated_cannot_be_chosen_and_states_why(qtbot: QtBot, card: Contr
     assert reported.args == [None]
     left, _right = card.side.segments
     assert not left.isEnabled()
+    assert words_of(card) == [f"Knee in swing, left cannot be a target: {why}"]
     both: dict[Choice, str] = {(TargetMeasure.KNEE_SWING_PEAK, side): why for side in Side}
     card.show_reasons(both)
     knee, foot, *_ = card.measure.segments
     assert not knee.isEnabled()
     assert foot.isChecked()
     assert card.reason == ""
+    assert words_of(card) == [f"Knee in swing cannot be a target: {why}"]
     card.show_reasons({})
     assert knee.isEnabled()
     assert left.isEnabled()
+    assert words_of(card) == []
+
+
+def words_of(card: ControlsCard) -> list[str]:
+    """The lines that state what cannot be a target."""
+    lines = [one.text() for one in card.findChildren(Text) if one.isVisible() and "cannot be a target" in one.text()]
+    return [line for text in lines for line in text.splitlines()]
+
+
+def test_what_was_chosen_by_hand_comes_back_once_it_is_possible(qtbot: QtBot, card: ControlsCard) -> None:
+    why: dict[Choice, str] = {(TargetMeasure.KNEE_SWING_PEAK, side): "No free motion." for side in Side}
+    card.show_reasons(why)
+    assert card.choice == (TargetMeasure.FOOT_STRIKE, Side.LEFT)
+    card.show_reasons({})  # as soon as the free motion is evaluated
+    assert card.choice == (TargetMeasure.KNEE_SWING_PEAK, Side.LEFT)
+    card.side.choose(Side.RIGHT)
+    card.show_reasons({(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT): "No signal."})
+    assert card.choice == (TargetMeasure.KNEE_SWING_PEAK, Side.LEFT)
+    card.show_reasons({})
+    assert card.choice == (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT)
+    card.show_reasons(why)
+    typed(card, "10")  # a target of the foot, by hand
+    card.show_reasons({})
+    assert card.choice == (TargetMeasure.FOOT_STRIKE, Side.RIGHT)
 
 
 def test_where_nothing_can_be_a_target_the_reason_is_there(card: ControlsCard) -> None:
     card.show_reasons(dict.fromkeys(choices(), "There is no foot sensor."))
     assert card.reason == "There is no foot sensor."
+    assert words_of(card) == [
+        "Knee in swing; Foot at contact; Stance symmetry; Cadence cannot be a target: There is no foot sensor."
+    ]
     assert not card.target.isEnabled()
     card.show_reasons({})
     assert card.reason == ""
     assert card.target.isEnabled()
+
+
+def test_what_is_typed_out_of_range_is_stated_in_the_place_of_the_status(card: ControlsCard) -> None:
+    card.show_status("No target yet.", "Type one and press Enter.")
+    shown = {one.text for one in card.findChildren(Notice) if one.isVisible()}
+    assert shown == {"No target yet. Type one and press Enter."}
+    typed(card, "555")
+    shown = {one.text for one in card.findChildren(Notice) if one.isVisible()}
+    assert shown == {"Enter a whole number from 5 to 100°."}
+    typed(card, "55")
+    shown = {one.text for one in card.findChildren(Notice) if one.isVisible()}
+    assert shown == {"No target yet. Type one and press Enter."}
 
 
 def test_the_metronome_is_started_with_the_typed_rate_and_stopped(qtbot: QtBot, card: ControlsCard) -> None:
@@ -135,3 +217,25 @@ def test_the_metronome_is_started_with_the_typed_rate_and_stopped(qtbot: QtBot, 
     with qtbot.waitSignal(card.metronome_pressed) as reported:
         card.tick.click()
     assert reported.args == [0]
+    with qtbot.assertNotEmitted(card.metronome_pressed, wait=0):
+        card.show_metronome(0)
+        typed_rate(card, "100", Qt.Key.Key_Tab)  # who only passes by starts nothing
+    with qtbot.waitSignal(card.metronome_pressed) as reported:
+        typed_rate(card, "100", Qt.Key.Key_Return)
+    assert reported.args == [100]
+    card.show_metronome(100)
+    for key in (Qt.Key.Key_Return, Qt.Key.Key_Tab):
+        with qtbot.waitSignal(card.metronome_pressed) as reported:
+            typed_rate(card, "110", key)
+        assert reported.args == [110]
+    with qtbot.waitSignal(card.metronome_pressed) as reported:
+        typed_rate(card, "", Qt.Key.Key_Return)
+    assert reported.args == [0]
+
+
+def typed_rate(card: ControlsCard, text: str, key: Qt.Key) -> None:
+    card.rate.line_edit.setFocus()
+    card.rate.line_edit.selectAll()
+    QTest.keyClick(card.rate.line_edit, Qt.Key.Key_Delete)
+    QTest.keyClicks(card.rate.line_edit, text)
+    QTest.keyClick(card.rate.line_edit, key)

@@ -10,7 +10,7 @@ import pytest
 from app.wizard.losses import NOTHING
 from app.wizard.walking import estimator as estimator_module
 from app.wizard.walking.estimator import KEPT_S, WalkingEstimator
-from app.wizard.walking.patient_feedback import _is_gated
+from app.wizard.walking.patient_status import hindrance
 from app.wizard.walking.readout import LiveTrace, WalkingReadout
 from app.wizard.walking.walk_notice import WalkNotice
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side
@@ -139,5 +139,5 @@ def test_it_is_stated_above_the_walks_while_one_goes_on() -> None:
 
 def test_a_patient_is_shown_nothing_of_it() -> None:
     target = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 60)
-    assert _is_gated(target, WalkingReadout(implausible=(KNEE,)), LEG_SITES)
-    assert not _is_gated(target, WalkingReadout(implausible=(Joint.RIGHT_KNEE,)), LEG_SITES)
+    assert hindrance(target, WalkingReadout(implausible=(KNEE,)), LEG_SITES)[0].startswith("Left knee: angle outside")
+    assert hindrance(target, WalkingReadout(implausible=(Joint.RIGHT_KNEE,)), LEG_SITES) == NOTHING

@@ -1,25 +1,33 @@
 """From the estimator's values to the patient's screen: which count, which sound, when it waits, what is kept."""
 
+import math
+import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.patient_screen.controls import ControlsCard
 from app.system import sounds
-from app.system.sounds import Sound
-from app.wizard.walking.patient_feedback import PatientFeedback, reasons_against
-from app.wizard.walking.readout import WalkingReadout
+from app.system.sounds import Loudspeaker, Sound
+from app.widgets.notice import Notice
+from app.wizard.walking.patient_feedback import PatientFeedback
+from app.wizard.walking.patient_status import reasons_against
+from app.wizard.walking.readout import LiveLane, PhaseSpan, WalkingReadout
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.calibration.strap import Slip
+from core.gait.phases import Phase
 from core.live.stride_values import StrideValue
 from core.results import ZeroKind
 from core.targets import Target, TargetMeasure, TargetTally
+from tests.app.patient_screen.sound_detection import spans_s
 from tests.core.verdicts.built_walk import calibration
 
 KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
@@ -60,15 +68,20 @@ def estimator() -> Reported:
 
 
 @pytest.fixture
-def feedback(qtbot: QtBot, estimator: Reported, received: list[Sound]) -> Iterator[PatientFeedback]:
+def visit() -> Any:
+    """What the feedback asks of a visit."""
+    sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN, are_in_memory=False)
+    return SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
+
+
+@pytest.fixture
+def feedback(qtbot: QtBot, visit: Any, estimator: Reported, received: list[Sound]) -> Iterator[PatientFeedback]:
     page = QWidget()
     qtbot.addWidget(page)
     card = ControlsCard()
     card.setParent(page)
     page.show()
-    sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN)
-    visit: Any = SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
-    feedback = PatientFeedback(visit, card, page)
+    feedback = PatientFeedback(visit, card, page, lambda: estimator.state)
     feedback.toggle()
     reported: Any = estimator
     feedback.watch(reported)
@@ -174,6 +187,201 @@ def test_a_walk_counts_its_own_strides_for_each_target(
     qtbot.waitUntil(lambda: feedback.view.last == (100,))
     assert feedback.end_walk() == (TargetTally(KNEE, 2, 3), TargetTally(BEAT, 0, 1))
     assert feedback.end_walk() == ()
+
+
+def status(feedback: PatientFeedback) -> str:
+    """All that is stated beside the controls."""
+    notices = card_of(feedback).findChildren(Notice)
+    return " ".join(one.text for one in notices if not one.isHidden())
+
+
+def shown(feedback: PatientFeedback) -> int | None:
+    return feedback.view.value
+
+
+def aimed(feedback: PatientFeedback) -> Target | None:
+    return feedback.target
+
+
+def has_sound(feedback: PatientFeedback) -> bool:
+    return feedback.view.has_sound
+
+
+STANDING = {side: LiveLane((PhaseSpan(Phase.FOOT_FLAT, 0.0, None),)) for side in Side}
+
+
+def test_while_the_patient_is_standing_the_next_step_is_waited_for_and_between_steps_the_value_stays(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
+) -> None:
+    estimator.show_message(*knee(60.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    estimator.show_message(lanes=STANDING, now_s=2.0)  # a foot is flat: of a slow stride
+    feedback.look()
+    assert shown(feedback) == 60
+    estimator.show_message(now_s=30.0)
+    feedback.look()
+    assert shown(feedback) is None
+    assert feedback.view.last == (60,)  # what was reached stays
+    assert "Waiting for the next step" in feedback.view.in_words
+    assert "The patient is standing." in status(feedback)
+    moves = {side: LiveLane((PhaseSpan(Phase.SWING, 30.2, None),)) for side in Side}
+    estimator.show_message(*knee(62.0), lanes=moves, now_s=31.0)
+    qtbot.waitUntil(lambda: feedback.view.value == 62)
+    assert "Waiting" not in feedback.view.in_words
+
+
+def test_what_hinders_a_value_is_stated_to_the_clinician_and_is_gone_when_it_is_over(
+    feedback: PatientFeedback, estimator: Reported
+) -> None:
+    feedback.begin_walk()
+    for gated, words in (
+        ({"missing": (Site.LEFT_SHANK,)}, "L shank: no signal. The patient sees no value until the signal is back."),
+        ({"slips": (Slip(Site.LEFT_THIGH, 1.0, 0.3),)}, "L thigh: strap moved."),
+        ({"doubtful": (Site.LEFT_FOOT,)}, "L foot: steps do not match the knee."),
+        ({"implausible": (Joint.LEFT_KNEE,)}, "Left knee: angle outside"),
+    ):
+        before = estimator.state
+        estimator.show_message(**gated)
+        feedback.look()
+        assert words in status(feedback)
+        assert "One moment" in feedback.view.in_words
+        estimator.state = before
+        feedback.look()
+        assert words not in status(feedback)
+        assert "One moment" not in feedback.view.in_words
+
+
+def test_without_a_target_a_walk_or_data_what_is_missing_is_stated(
+    feedback: PatientFeedback, visit: Any, estimator: Reported
+) -> None:
+    assert "No walk is being recorded. Space starts one." in status(feedback)
+    feedback.begin_walk()
+    feedback.look()
+    assert "No walk is being recorded" not in status(feedback)
+    feedback.end_walk()
+    card_of(feedback).target_set.emit(None)
+    assert "No target yet. Type one and press Enter." in status(feedback)
+    estimator.state = WalkingReadout()
+    feedback.look()
+    assert "No sensor data." in status(feedback)
+    visit.sensors.are_in_memory = True
+    feedback.look()
+    assert "The sensors store the walk themselves." in status(feedback)
+
+
+def test_a_knee_that_can_no_longer_be_a_target_lets_the_patient_wait_and_is_named(
+    feedback: PatientFeedback, visit: Any
+) -> None:
+    card = card_of(feedback)
+    card.target.set_value(55)
+    card.target.committed.emit()
+    assert aimed(feedback) == KNEE
+    feedback.begin_walk()
+    feedback.count({Side.LEFT: 13})
+    visit.calibration = {joint: one for joint, one in SURE.items() if joint is not Joint.LEFT_KNEE}
+    feedback.show_reasons()
+    feedback.look()
+    assert aimed(feedback) is None
+    assert feedback.view.in_words == "One moment"
+    assert "Knee in swing, left: no longer a target." in status(feedback)
+    visit.calibration = SURE
+    feedback.show_reasons()
+    feedback.look()
+    assert feedback.view.in_words == "13 steps so far"
+    assert "No target yet." in status(feedback)
+    card.target.set_value(55)
+    card.target.committed.emit()
+    assert aimed(feedback) == KNEE
+
+
+def test_f11_opens_it_full_and_what_was_chosen_comes_back(feedback: PatientFeedback) -> None:
+    feedback.close()
+    feedback.toggle_full_screen()
+    assert feedback.window is not None
+    assert feedback.window.isFullScreen()
+    assert card_of(feedback).full.text() == "Small window"
+    feedback.toggle_full_screen()
+    assert not feedback.window.isFullScreen()
+    assert card_of(feedback).full.text() == "Full screen"
+    feedback.toggle()
+    feedback.toggle()
+    assert feedback.window is not None
+    assert not feedback.window.isFullScreen()
+
+
+def test_it_is_judged_though_no_page_ticks_as_under_the_manual(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
+) -> None:
+    estimator.show_message(*knee(60.0))
+    qtbot.waitUntil(lambda: feedback.view.value == 60)
+    estimator.show_message(missing=(Site.LEFT_SHANK,))
+    qtbot.waitUntil(lambda: feedback.view.is_waiting)
+
+
+def test_the_tone_is_off_by_choice_and_why_nothing_sounds_is_stated(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sounds, "has_output", lambda: True)
+    card = card_of(feedback)
+    feedback.look()
+    assert has_sound(feedback)
+    assert "ound" not in status(feedback)
+    monkeypatch.setattr(sounds, "has_output", lambda: False)
+    feedback.look()
+    assert not has_sound(feedback)
+    assert "No sound output was found." in status(feedback)
+    monkeypatch.setattr(sounds, "is_on", lambda: False)
+    feedback.look()
+    assert "Sounds are off." in status(feedback)
+    monkeypatch.undo()
+    monkeypatch.setattr(sounds, "play", received.append)
+    card.tone.setChecked(False)
+    assert "Sounds are off." not in status(feedback)
+    estimator.show_message(*knee(60.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    assert received == []
+    card.tone.setChecked(True)
+    estimator.show_message(*knee(61.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (60, 61))
+    assert received == [Sound.REACHED]
+
+
+def test_the_samples_that_are_played_hold_one_tone_for_each_step_that_reached(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the samples that the player is given, one file after the other."""
+    monkeypatch.undo()  # of what notes the sounds
+    played = tmp_path / "played"
+    takes = f"import sys; open({str(played)!r}, 'ab').write(open(sys.argv[-1], 'rb').read()[44:] + bytes(9600))"
+    monkeypatch.setattr(sounds, "_loudspeaker", Loudspeaker([[sys.executable, "-c", takes]]))
+
+    def tones() -> list[tuple[float, float]]:
+        samples = np.frombuffer(played.read_bytes() if played.exists() else b"", "<i2").astype(float)
+        return spans_s(samples, 48_000.0, 880.0)
+
+    def wait_for(value: int, count: int) -> None:
+        qtbot.waitUntil(lambda: shown(feedback) == value and len(tones()) == count, timeout=10_000)
+
+    expected = 0
+    for value in (54.4, 60.0, 50.0, 55.0, 54.5, 40.0, 61.0):
+        estimator.show_message(*knee(value))
+        expected += value >= 54.5
+        wait_for(math.floor(value + 0.5), expected)
+    assert expected == 4
+    assert all(0.1 < end_s - begin_s < 0.25 for begin_s, end_s in tones())
+    samples = np.frombuffer(played.read_bytes(), "<i2").astype(float)
+    assert np.abs(samples).max() > 1000.0
+
+
+def test_the_screen_is_closed_by_its_frame_and_opens_again(qtbot: QtBot, feedback: PatientFeedback) -> None:
+    assert feedback.window is not None
+    feedback.metronome.start(100)
+    feedback.window.close()  # as its frame's button does
+    assert not feedback.is_open
+    assert card_of(feedback).isHidden()
+    assert feedback.metronome.beats_per_min == 0
+    feedback.toggle()
+    assert feedback.is_open
 
 
 def test_closed_it_neither_sounds_nor_counts(
