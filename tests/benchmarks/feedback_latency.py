@@ -9,8 +9,9 @@ stride reaches.
 
 "From the event": from the instant of the knee's peak, of the contact or of the toe-off to when the bar has been
 painted, and to when the tone is handed to the player. "From its end": from the sample that reports it, with which a
-knee has fallen from its peak and a contact is found. How long the player takes from there to the loudspeaker is not in
-it.
+knee has fallen from its peak and a contact is found; it arrives up to 15 ms later, as the source is polled. How long
+the player takes from there to the loudspeaker is not in it. What is asked for: 95 % of the bars are painted within
+150 ms of the stride's end. The window is as large as on a screen of its own.
 
 On a machine that others keep busy these are mostly the machine's. `--computed` plays the same in a time of its own:
 when the reader polls and the estimator wakes is computed as the application does both, and only the processor time of
@@ -37,6 +38,7 @@ from app.acquisition.acquisition import Acquisition
 from app.acquisition.live_sensors import live_sensors
 from app.acquisition.preview import EVERY_S, LEAST_PAUSE_S
 from app.main_window import SWITCH_S
+from app.patient_screen.picture import HEIGHT, WIDTH
 from app.storage.journal.writer import JournalWriter
 from app.system import sounds
 from app.system.sounds import Sound
@@ -65,6 +67,7 @@ STRIDE_S = 1.1
 TICK_MS = 33
 BEAT_S = 0.01
 ALWAYS_REACHED = -99
+GOAL_S = 0.15  # from the end of a stride to its bar, 95 %
 
 Noted = list[tuple[StrideValue, float]]
 
@@ -161,9 +164,11 @@ def run(seconds: float) -> None:
         page.resize(1064, 600)
         page.show_walks((WalkRow("1", "A", "Barefoot", WalkState.RECORDING),))
         page.show()
-        feedback = PatientFeedback(_visit(site_of, calibration), page.patient_controls, page)
+        visit = _visit(site_of, calibration)
+        feedback = PatientFeedback(visit, page.patient_controls, page, lambda: estimator.state)
         feedback.toggle()
         assert feedback.window is not None
+        feedback.window.resize(WIDTH, HEIGHT)
         feedback.watch(estimator)
         watch = _Watch(acquisition, estimator, feedback)
         sounds.play = watch.on_sound  # the tone itself is not measured, and nobody is to hear it
@@ -205,6 +210,7 @@ def run(seconds: float) -> None:
         app.processEvents()
         collector.deleteLater()
         dropped, trouble = acquisition.dropped_from_preview, acquisition.trouble
+        print(_goal(every[1]))
         print(f"\nA thread that does nothing woke so late meanwhile: {_quantiles(beat.late_s)}.")
         print(f"Samples that the estimator never saw: {dropped}; it failed with: {trouble}.")
     finally:
@@ -234,6 +240,8 @@ def compute(seconds: float) -> None:
     page.show()
     feedback = PatientFeedback(_visit(site_of, calibration), page.patient_controls, page)
     feedback.toggle()
+    assert feedback.window is not None
+    feedback.window.resize(WIDTH, HEIGHT)
     played, sounds.play = sounds.play, lambda sound: None
     noted: dict[TargetMeasure, tuple[Noted, Noted]] = {measure: ([], []) for measure in TargetMeasure}
     for measure in TargetMeasure:
@@ -271,6 +279,7 @@ def compute(seconds: float) -> None:
         cells = [_quantiles([at_s - one.event_s for one, at_s in part]) for part in (known, shown)]
         cells.append(_quantiles([at_s - one.reported_s for one, at_s in shown]))
         print(f"| {name} | {len(shown)} | " + " | ".join(cells) + " |")
+    print(_goal(every[1]))
     sounds.play = played
     feedback.watch(None)
     feedback.close()
@@ -293,10 +302,12 @@ def _between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
 
 def _visit(site_of: dict[str, Site], calibration: Any) -> Any:
     """What the screen asks of a visit."""
-    sensors = SimpleNamespace(sensor_at={site: name for name, site in site_of.items()}, site_of=site_of)
+    sensors = SimpleNamespace(
+        sensor_at={site: name for name, site in site_of.items()}, site_of=site_of, are_in_memory=False
+    )
     return SimpleNamespace(
         sensors=sensors,
-        evaluation=SimpleNamespace(calibration=calibration),
+        calibration=calibration,
         prosthetic_sides=frozenset(),
         rests=site_of,
     )
@@ -306,6 +317,12 @@ def _row(name: str, known: Noted, painted: Noted, received: Noted) -> str:
     cells = [_quantiles([at_s - one.event_s for one, at_s in noted]) for noted in (known, painted, received)]
     cells += [_quantiles([at_s - one.reported_s for one, at_s in noted]) for noted in (painted, received)]
     return f"| {name} | {len(received)} | " + " | ".join(cells) + " |"
+
+
+def _goal(painted: Noted) -> str:
+    took_s = float(np.quantile([at_s - one.reported_s for one, at_s in painted], 0.95)) if painted else math.nan
+    answer = "is met" if took_s <= GOAL_S else "is missed"
+    return f"\n{1000 * GOAL_S:.0f} ms from the end to the bar, 95 %: {answer} with {1000 * took_s:.0f} ms."
 
 
 def _quantiles(values_s: list[float]) -> str:
