@@ -63,6 +63,8 @@ def _answer(command: str) -> None:
             window._settings.language = rest[0]  # the window is made again in it
         case "picture":
             _picture_of(window).save(rest[0])
+            for patients in _patients_windows():
+                patients.grab().save(rest[0].replace(".png", "-patient.png"))
         case "tell":
             reported = _look_at(window)
         case "end":
@@ -107,6 +109,14 @@ def _picture_of(window: Any) -> "QPixmap":
     return picture
 
 
+def _patients_windows() -> "list[QWidget]":
+    from PySide6.QtWidgets import QApplication
+
+    from app.patient_screen.window import PatientWindow
+
+    return [one for one in QApplication.topLevelWidgets() if isinstance(one, PatientWindow) and one.isVisible()]
+
+
 def _look_at(window: Any) -> dict[str, Any]:
     from PySide6.QtWidgets import (
         QAbstractButton,
@@ -149,6 +159,8 @@ def _look_at(window: Any) -> dict[str, Any]:
                     controls.setdefault(meant, (middle.x(), middle.y()))
         elif widget.accessibleName():
             words.extend(read(widget.accessibleName()))
+    for patients in _patients_windows():
+        words.extend(read(patients.accessibleName()))
     return {
         "screen": type(screen).__name__,
         "step": type(step).__name__ if step is not None else "",

@@ -79,6 +79,10 @@ def states(words: str) -> Callable[[Seen], bool]:
     return lambda seen: seen.states(words)
 
 
+def focus_on(control: str) -> Callable[[Seen], bool]:
+    return lambda seen: any(name.startswith(control) for name in seen.focus)
+
+
 def shows_pages(seen: Seen) -> bool:
     return at_step("ReportStep")(seen) and any(words.endswith(" pages") for words in seen.words)
 
@@ -398,6 +402,29 @@ PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
     Stop("63-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop("64-saved", states("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
 )
+# a target and a metronome by keys, a walk towards it, and the patient's screen in a corner, full and closed
+PATIENT: tuple[Stop, ...] = (
+    *KEYBOARD[:BENCH_UP_TO],
+    Stop("51-choose", offers("Patient screen"), ("press F8",), lingers_s=1.0, patience_s=90.0),
+    Stop(
+        "52-opened", states("No target yet"), ("press Right", "press Left", "press Tab", "press Right", "press Return")
+    ),
+    Stop("53-out-of-range", focus_on("Target"), ("type 555", "press Return"), lingers_s=1.0),
+    Stop("54-refused", states("Enter a whole number"), ("press ctrl+a", "type 40", "press Return"), lingers_s=1.0),
+    Stop("55-target", states("Target 40"), ("to Metronome", "type 100", "press Return")),
+    Stop("56-ticks", offers("Stop metronome"), lingers_s=1.0),
+    Stop("57-stands", states("Target 40"), ("press space",), lingers_s=1.0),
+    Stop("58-bar", lambda seen: seen.is_recording and seen.states("Now ")),
+    Stop("59-walks", states("Last "), ("press F11",)),
+    Stop("60-full", offers("Small window"), ("press F11",), lingers_s=1.0),
+    Stop("61-corner", offers("Full screen")),
+    Stop("61a-standing", states("The patient is standing"), ("press space",)),
+    Stop("62-walked", lambda seen: not seen.is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),
+    Stop("63-closed", lambda seen: not seen.states("Target 40"), ("press F8",), lingers_s=1.0),
+    Stop("64-again", states("Target 40"), ("press F8",), lingers_s=1.0),
+    Stop("65-closed", lambda seen: not seen.states("Target 40"), ("press i",), lingers_s=1.0),
+    Stop("66-kept", offers("Results"), lingers_s=1.0),
+)
 SWAPPED = {"L shank": "R thigh", "R thigh": "L shank"}  # where somebody straps them by mistake
 SWAPPED_BY_KEYS = tuple(
     key for place in PLACES.values() for key in (f"press {DIGITS[SWAPPED.get(place, place)]}", "press Down")
@@ -442,5 +469,6 @@ TOURS = {
     "timed": TIMED,
     "review": REVIEWED,
     "pelvis": PELVIS,
+    "patient": PATIENT,
     "dead-ends": DEAD_ENDS,
 }
