@@ -174,15 +174,11 @@ class PatientWindow(QWidget):
         QTimer.singleShot(0, self, self._leave_screen)  # once Qt has brought its windows to another
 
     def _leave_screen(self) -> None:
-<<<<<<< HEAD
-        """Where it filled a screen that is gone it goes into a corner: it never covers the clinician's by itself."""
-=======
         """Where its screen is gone it goes to another or into a corner: it never covers the clinician's by itself."""
         if self._second is None:
             self._placing.is_full[False] = False
         elif self._other is not None and self.screen() is not self._other.screen():
             return  # another screen was unplugged
->>>>>>> patient
         if self.isVisible():
             self._show()
 

@@ -461,15 +461,6 @@ PATIENT: tuple[Stop, ...] = (
     Stop("55-target", states("Target 40"), ("to Metronome", "type 100", "press Return")),
     Stop("56-ticks", offers("Stop metronome"), lingers_s=1.0),
     Stop("57-stands", states("Target 40"), ("press space",), lingers_s=1.0),
-<<<<<<< HEAD
-    Stop("58-bar", lambda seen: seen.is_recording and seen.states("Now "), lingers_s=4.0),
-    Stop("59-walks", states("Last 5 steps"), ("press F11",), lingers_s=1.0),
-    Stop("60-full", offers("Small window"), ("press F11",), lingers_s=1.0),
-    Stop("61-corner", offers("Full screen"), ("press space",), lingers_s=1.0),
-    Stop("62-walked", lambda seen: not seen.is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),
-    Stop("63-closed", lambda seen: not seen.states("Target 40"), ("press F8",), lingers_s=1.0),
-    Stop("64-again", states("Right knee: bend it as the leg swings. Target 40"), ("press F8",), lingers_s=1.0),
-=======
     Stop("58-bar", lambda seen: seen.is_recording and seen.states("Now ")),
     Stop("59-walks", states("Last "), ("press F11",)),
     Stop("60-full", offers("Small window"), ("press F11",), lingers_s=1.0),
@@ -478,7 +469,6 @@ PATIENT: tuple[Stop, ...] = (
     Stop("62-walked", lambda seen: not seen.is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),
     Stop("63-closed", lambda seen: not seen.states("Target 40"), ("press F8",), lingers_s=1.0),
     Stop("64-again", states("Target 40"), ("press F8",), lingers_s=1.0),
->>>>>>> patient
     Stop("65-closed", lambda seen: not seen.states("Target 40"), ("press i",), lingers_s=1.0),
     Stop("66-kept", offers("Results"), lingers_s=1.0),
 )

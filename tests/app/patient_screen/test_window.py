@@ -211,10 +211,7 @@ def test_a_second_screen_is_filled_and_where_it_is_unplugged_the_corner_takes_it
 ) -> None:
     second: list[QScreen] = [QGuiApplication.primaryScreen()]  # the tests have one
     monkeypatch.setattr(PatientWindow, "_second", property(lambda _: next(iter(second), None)))
-<<<<<<< HEAD
-=======
     whole.placing.ask_for_full()  # by F11; where there is one screen it would hide the clinician's
->>>>>>> patient
     window = whole.open()
     assert window.isFullScreen()
     removed = second.pop()
