@@ -199,10 +199,10 @@ def _run_quietly(command: Sequence[str], advice: str, **environment: str) -> Non
         check=False,
     )
     if answer.returncode != 0:
-        raise SetUpError(f"{answer.stdout.strip()}\n\n{_without_wheel(answer.stdout) or advice}")
+        raise SetUpError(f"{answer.stdout.strip()}\n\n{without_wheel(answer.stdout) or advice}")
 
 
-def _without_wheel(printed: str) -> str:
+def without_wheel(printed: str) -> str:
     """Name the part that exists, but not for this Python or computer; empty where pip failed at something else."""
     refused = re.search(r"No matching distribution found for ([\w.-]+)", printed)
     # a registry that was not reached says so first, and then that it found none

@@ -98,7 +98,7 @@ NOT_REACHED = "WARNING: Retrying after connection broken by 'NewConnectionError'
 def test_a_part_without_a_wheel_is_named_and_the_connection_is_not_blamed(
     set_up: ModuleType, printed: str, stated: str
 ) -> None:
-    reported = set_up._without_wheel(printed)
+    reported = set_up.without_wheel(printed)
     assert reported.startswith(stated)
     assert bool(reported) == bool(stated)
 
