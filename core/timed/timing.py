@@ -94,10 +94,10 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
 def _parts(
     way: BodyWay, seat: SeatMotions, definition: Definition, turns: tuple[Turn, ...], span_s: tuple[float, float]
 ) -> tuple[UpAndGoPart, ...]:
-    """All six of an up and go that was finished; a silence takes the turns."""
+    """All six of an up and go that was finished; a swing that was not received takes the turns."""
     if definition.course_m is None or not all(map(math.isfinite, span_s)):
         return ()
-    at_cone = (None, None) if way.silences_in(*span_s) else cone_turns(way, turns, *span_s)
+    at_cone = cone_turns(way, turns, *span_s) if way.is_whole_in(*span_s) else (None, None)
     return parts_of(way, seat, at_cone, *span_s)
 
 

@@ -79,7 +79,7 @@ def check_up_and_go(
     """Hold an up and go against what it asks for: rise, go round a cone so far away, come back, turn, sit."""
     start_s, end_s = span_s
     time_s, place = place_at(way, start_s, end_s)
-    if len(time_s) < 2 or way.silences_in(start_s, end_s):
+    if len(time_s) < 2 or not way.is_whole_in(start_s, end_s):
         return NOT_CHECKED
     reasons: list[NotValid] = []
     if seat.has_thighs and not any(start_s - SEAT_S <= one.left_seat_s < end_s for one in seat.rises):
@@ -139,7 +139,7 @@ def laps_of(way: BodyWay, turns: tuple[Turn, ...], start_s: float, end_s: float)
     lengths, rest_m = [], math.nan
     for number, (from_s, to_s) in enumerate(pairwise(ends_s)):
         _, place = place_at(way, from_s, to_s)
-        if len(place) < 2 or way.silences_in(from_s, to_s):
+        if len(place) < 2 or not way.is_whole_in(from_s, to_s):
             continue
         is_first, is_last = number == 0, number == len(abouts)
         length_m = _between(place, is_round_first=not is_first, is_round_last=not is_last)

@@ -32,6 +32,7 @@ LOST_SWING_S = 1.5  # beside a silence a swing may be missing
 TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides turn a foot by up to 5 deg
 MIN_TURN_RAD = np.deg2rad(60.0)
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
+STANDS_SHARE = 1.2  # of a stride: no walking foot stands for longer
 PIVOT_RAD, PIVOT_EDGE = np.deg2rad(10.0), 0.1  # a foot that turned so far has turned, from a tenth to nine tenths of it
 MAX_ARC_RAD = np.deg2rad(150.0)
 USUAL_STRIDE_S = 1.2  # where no stride shows it
@@ -58,7 +59,7 @@ class BodyWay:
     """The body's way on an even clock.
 
     `time_s`, `way_m`, `heading_rad`: (n,): the way with its turns, the heading to the left, from the first sample on;
-    of the foot with samples where the other is silent.
+    of the foot with samples where the other is silent. `lost_s`: a gap too short for a silence took a swing there.
     """
 
     time_s: FloatArray
@@ -66,6 +67,7 @@ class BodyWay:
     heading_rad: FloatArray
     feet: Mapping[Side, FootSteps]
     silences: tuple[Silence, ...]
+    lost_s: tuple[float, ...] = ()
 
     @property
     def swings_s(self) -> FloatArray:
@@ -88,6 +90,11 @@ class BodyWay:
     def silences_in(self, start_s: float, end_s: float) -> tuple[Silence, ...]:
         """Those that lie between two instants, in part or whole."""
         return tuple(one for one in self.silences if one.start_s < end_s and one.end_s > start_s)
+
+    def is_whole_in(self, start_s: float, end_s: float) -> bool:
+        """Whether every swing between two instants was received, so that the way leads where the body went."""
+        is_lost = any(start_s <= at_s <= end_s for at_s in self.lost_s)
+        return not is_lost and not self.silences_in(start_s, end_s)
 
     def cadence_in(self, start_s: float, end_s: float) -> float:
         """Steps per minute while walking, from the median stride; NaN without a stride."""
@@ -196,8 +203,21 @@ def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> B
         speeds.append(speed)
         turnings.append(turning)
     # without the rise and fall of speed in each step, which the body has less of than the feet
-    way_m = moving_mean(_total(speeds), max(1, round(0.5 * usual_stride_s(steps) / STEP_S)))
-    return BodyWay(time_s, way_m, _total(turnings), steps, tuple(silences))
+    stride_s = usual_stride_s(steps)
+    way_m = moving_mean(_total(speeds), max(1, round(0.5 * stride_s / STEP_S)))
+    lost_s = tuple(at_s for side, foot in feet.items() for at_s in _lost(foot, steps[side], stride_s))
+    return BodyWay(time_s, way_m, _total(turnings), steps, tuple(silences), lost_s)
+
+
+def _lost(foot: ReceivedFoot, steps: FootSteps, stride_s: float) -> list[float]:
+    """When a gap took a swing: the foot seems to stand for longer than a stride around it."""
+    lost = []
+    for (_, gap_s), (again_s, _) in pairwise(foot.received_s):
+        landed = steps.contact_s[steps.contact_s <= again_s]
+        left = steps.toe_off_s[steps.toe_off_s >= gap_s]
+        if len(landed) and len(left) and left[0] - landed[-1] > STANDS_SHARE * stride_s:
+            lost.append(gap_s)
+    return lost
 
 
 def _chained(swings: tuple[FootSwings, ...]) -> FloatArray:
@@ -330,14 +350,17 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
 
 
 def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
-    """Give contact to toe-off, in s, wherever both feet stood for a second between two steps."""
+    """Give contact to toe-off, in s, wherever both feet stood for a second between two steps and did not turn."""
     swings = way.swings_s
     landed = np.maximum.accumulate(swings[:, 1]) if len(swings) else np.empty(0)
+    turned = sorted((a, b) for foot in way.feet.values() for a, b in foot.turned_s.tolist())
     found = []
     for landed_s, off_s in zip(landed[:-1].tolist(), swings[1:, 0].tolist(), strict=True):
-        is_received = not way.silences_in(landed_s - LOST_SWING_S, off_s + LOST_SWING_S)
-        if off_s - landed_s >= STILL_S and is_received:
-            found.append((landed_s, off_s))
+        edges = [landed_s, *(t for a, b in turned if landed_s < a and b < off_s for t in (a, b)), off_s]
+        for from_s, to_s in zip(edges[::2], edges[1::2], strict=True):
+            is_received = not way.silences_in(from_s - LOST_SWING_S, to_s + LOST_SWING_S)
+            if to_s - from_s >= STILL_S and is_received:
+                found.append((from_s, to_s))
     return tuple(found)
 
 

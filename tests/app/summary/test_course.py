@@ -12,6 +12,7 @@ from app.summary.course import OF_A_LEG, Course, CourseCondition, change, course
 from core.body import Joint, Side
 from core.parameters import CADENCE, KNEE, SPEED, STANCE
 from core.session import Recording
+from core.timed.found import NotValid
 from core.timed.measures import COLUMNS
 from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import Judgement
@@ -172,6 +173,18 @@ def test_a_timed_test_is_with_its_condition_as_the_mean_of_its_attempts() -> Non
     assert test.found.attempts == 2
     assert test.whisker == pytest.approx(0.09009, abs=1e-5)
     assert stick.tests[0].found.mean == pytest.approx(0.5)
+
+
+def test_an_attempt_that_is_not_valid_is_in_no_mean() -> None:
+    up_and_go = COLUMNS[TimedProtocol.UP_AND_GO]
+    good = timed(TimedProtocol.UP_AND_GO, time_s=10.0, name="walk 2")
+    other = timed(TimedProtocol.UP_AND_GO, time_s=18.0, name="walk 3")
+    assert other.timed is not None
+    twice = replace(other, timed=replace(other.timed, not_valid=(NotValid.MORE_TURNS,)))
+    (test,) = only(course((good, "shoes"), (twice, "shoes"))).tests
+    assert (test.column, test.found.mean, test.found.attempts) == (up_and_go, 10.0, 1)
+    (alone,) = only(course((twice, "shoes"))).tests
+    assert not alone.is_reported
 
 
 def test_a_condition_of_tests_from_a_chair_alone_has_no_figure_of_walking() -> None:

@@ -76,6 +76,16 @@ def test_a_second_with_both_feet_down_is_a_pause_and_less_is_none() -> None:
     assert pauses_of(way_with(straight, hesitating)) == ()
 
 
+def test_feet_that_turn_on_the_spot_are_in_no_pause() -> None:
+    contacts = np.concatenate([np.arange(2.0, 10.0, 0.6), np.arange(12.0, 20.0, 0.6)])
+    way = way_with(np.zeros_like(TIME_S), contacts)
+    left = replace(way.feet[Side.LEFT], turned_s=np.array([[10.4, 11.0]]), heading_rad=np.array([[0.0, 0.7]]))
+    assert pauses_of(replace(way, feet={**way.feet, Side.LEFT: left})) == ()
+    late = replace(left, turned_s=np.array([[11.0, 11.4]]))
+    (pause,) = pauses_of(replace(way, feet={**way.feet, Side.LEFT: late}))
+    assert pause == pytest.approx((contacts[13], 11.0))
+
+
 def test_no_pause_is_invented_where_a_foot_was_not_received() -> None:
     contacts = np.concatenate([np.arange(2.0, 10.0, 0.6), np.arange(12.0, 20.0, 0.6)])
     silence = Silence(Site.LEFT_FOOT, 10.0, 11.5)
