@@ -30,6 +30,7 @@ KEPT_S = 6.0  # of samples: a swing that is not settled, and the stance before i
 LEAST_SAMPLES = 10  # too few for any swing
 OVERLAP_S = 0.05
 SEAT_SURE_S = 0.7  # after the thighs seem to have come to the seat, or upright
+LAST_STEP_S = 5.0  # on stairs the patient may stand for so long between two steps
 KEY_AT_START_S = 1.5  # a key pressed so shortly after the motion began meant the beginning
 RUN_OUT_S = 2.5  # after the motion has ended a test, a key may still say where the tape is
 
@@ -142,6 +143,8 @@ class LiveTest:
         start_s, end_s = found.start_s, found.end_s
         if found.definition.is_from_chair and not found.is_end_by_key and now_s - end_s < SEAT_SURE_S:
             end_s = math.nan  # how far the thighs will come is not seen yet
+        if planned.protocol.is_on_stairs and not found.is_end_by_key and now_s - end_s < LAST_STEP_S:
+            end_s = math.nan  # a step may follow yet
         distance_m = math.nan
         steps: tuple[tuple[Side, float], ...] = ()
         if math.isfinite(start_s) and len(way.time_s):

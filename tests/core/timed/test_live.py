@@ -151,6 +151,20 @@ def test_tests_from_a_chair_are_reported_live(kind: CourseKind) -> None:
 
 
 @pytest.mark.endurance
+def test_no_step_of_stairs_is_taken_for_the_last_one_while_another_may_follow() -> None:
+    made = simulate_course(TimedCourse(CourseKind.STAIRS, seed=3, sites=FEET))
+    received, contacts_s = CourseReceived(made, TimedProtocol.STAIRS), made.truth.contacts_s
+    for at_s in contacts_s[4::6].tolist():
+        received.hear_until(at_s)
+        assert received.test.state.has_begun
+        assert not received.test.state.is_over
+    received.hear_until(math.inf)
+    found = received.test.state.found
+    assert found is not None
+    assert found.end_s == pytest.approx(float(contacts_s[-1]), abs=0.1)
+
+
+@pytest.mark.endurance
 def test_blocks_of_any_size_and_another_estimator_amid_the_walk_lose_no_step(ten_metres: SimulatedCourse) -> None:
     whole, twice = (CourseReceived(ten_metres, TimedProtocol.TEN_METRES) for _ in range(2))
     whole.hear_until(math.inf)
