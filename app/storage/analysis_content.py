@@ -38,7 +38,7 @@ from core.timed.found import (
     DistanceSource,
     NotMeasured,
     NotValid,
-    Part,
+    PartOfUpAndGo,
     Rise,
     Silence,
     Sitting,
@@ -68,7 +68,7 @@ WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
     for kind in (
         *(AmputationLevel, AxisSource, ClockStatus, ClockTie, DistanceSource, FootKind, Joint, JointNature, KneeKind),
-        *(Method, NotMeasured, NotValid, Part, Reason, RecordingKind),
+        *(Method, NotMeasured, NotValid, PartOfUpAndGo, Reason, RecordingKind),
         *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
     )
 }
