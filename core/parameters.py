@@ -68,6 +68,7 @@ class QuantityKind(StrEnum):
     FOOT_PITCH = "foot_pitch"
     HEEL_RISE = "heel_rise"
     FOOT_FLAT = "foot_flat"
+    SET_ANGLE = "set_angle"
     KNEE_TIMING = "knee_timing"
 
 
@@ -248,6 +249,7 @@ REGISTRY = (
         for segment in ("shank", "thigh")
         for instant in ("initial_contact", "mid_stance", "toe_off")
     ),
+    _fitting("shank_to_foot_in_swing_deg", _C.HEIGHT, _E.SET_ANGLE),
     _pelvis("hip_range_deg", _C.SHAPE, "largest less smallest hip flexion of the stride", most=140.0),
     _pelvis("hip_flexion_peak_deg", _C.HEIGHT, "largest hip flexion of the stride, from standing", "flexion positive"),
     _pelvis(

@@ -369,6 +369,18 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "text": _word("what somebody has typed of it"),
         "in_words": _word("the change in a line"),
     },
+    "set_angles.csv": {
+        "condition": _word("what the walk is called"),
+        "since": _word("the condition that it was changed from, or whose setting it repeats"),
+        "side": _word("the prosthetic leg"),
+        "set_deg": ColumnMeaning("by how much the foot was set, as somebody typed it", sign="plantarflexion positive"),
+        "measured_deg": ColumnMeaning(
+            "by how much the foot's angle against the shank in swing changed", "zero sign", "plantarflexion positive"
+        ),
+        "error_deg": ColumnMeaning("half of the likely interval (95 of 100) of what is measured"),
+        "agrees": _word("yes where what was set lies in the interval"),
+        "other_changes": _word("yes where something else was changed, of which nothing is measured"),
+    },
     **dict.fromkeys(("differences.csv", "visits.csv"), DIFFERENCES),
     **dict.fromkeys(("compared_cycles.csv", "visits_cycles.csv"), CYCLES),
 }

@@ -35,6 +35,7 @@ from app.summary.differences import (
     write_differences,
     write_sides,
 )
+from app.summary.prosthesis_fitting import SET_ANGLES, fitting_of, write_set_angles
 from app.summary.targets import HEADER as TARGET_COLUMNS
 from app.summary.targets import TARGETS, target_rows
 from app.system.tables import MOST_BYTES, is_free, read_json, write_table
@@ -54,7 +55,7 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, FITTING_MEANS, ALIGNMENTS, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS, GOALS, TIMED),
+        *(PEAKS, FITTING_MEANS, ALIGNMENTS, SET_ANGLES, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS, GOALS, TIMED),
         *(VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )
 )
@@ -95,6 +96,7 @@ def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> No
     """The conditions of the session, each against the first and the one it was changed from, and the legs of each."""
     parts = conditions_of(analysis, session.recordings, agreed=agreed_with(session))
     write_alignments(session.recordings, folder / ALIGNMENTS)
+    write_set_angles(fitting_of(session, analysis), folder / SET_ANGLES)
     if len(parts) > 1:
         write_differences(rows_along_chain(Comparison(Contrast.CONDITIONS, parts)), folder / DIFFERENCES)
         write_compared_cycles(parts, folder / COMPARED_CYCLES)

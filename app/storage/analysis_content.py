@@ -37,7 +37,7 @@ from core.timed.found import (
     DistanceSource,
     NotMeasured,
     NotValid,
-    Part,
+    PartOfUpAndGo,
     Rise,
     Silence,
     Sitting,
@@ -66,7 +66,7 @@ VALUES: Mapping[str, type] = {
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
     for kind in (
-        *(AxisSource, ClockStatus, ClockTie, DistanceSource, Joint, Method, NotMeasured, NotValid, Part),
+        *(AxisSource, ClockStatus, ClockTie, DistanceSource, Joint, Method, NotMeasured, NotValid, PartOfUpAndGo),
         *(Reason, RecordingKind),
         *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
     )

@@ -56,6 +56,7 @@ NAMES = {
     "foot_heel_rise_deg": later("Heel rise"),
     "foot_pitch_at_contact_deg": later("Foot angle at contact"),
     "foot_flat_percent": later("Foot flat"),
+    "shank_to_foot_in_swing_deg": later("Foot-to-shank angle, swing"),
     "shank_over_flat_foot_deg": later("Shank forward tilt, foot flat"),
 }
 WITH_UNIT = {  # as they head rows of figures that have no unit of their own

@@ -15,6 +15,7 @@ from core.parameters import KNEE_WINDOWS
 from core.samples import FloatArray
 
 EXTENDED_RAD = np.deg2rad(3.0)  # a knee that has come so near to its straightest has arrived; its last degrees are slow
+UNBENT, UNBENT_POINTS = (0.25, 0.85), 31  # share of swing, past what the toes' spring does and before the landing
 SWING_PEAK = KNEE_WINDOWS[-1]
 
 
@@ -48,6 +49,19 @@ def foot_measures(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray) -
         "foot_pitch_at_contact_rad": cycles[:, 0] if len(cycles) else np.empty(0),
         "foot_heel_rise_rad": np.where(np.isfinite(lowest), -lowest, np.nan),
     }
+
+
+def shank_to_foot(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray, leaning_rad: FloatArray) -> FloatArray:
+    """Give the mean angle (k,) of the foot against the shank while nothing bends it, in the middle of each swing, rad.
+
+    Pitch of the foot (toes up) and lean of the shank (forward) add up to dorsiflexion, from standing, and need no axis
+    of an ankle: of a foot without a joint this is how it is set.
+    """
+    swing_s = strides.end_s - strides.toe_off_s
+    at_s = strides.toe_off_s[:, None] + swing_s[:, None] * np.linspace(*UNBENT, UNBENT_POINTS)
+    if not len(time_s):
+        return np.full(len(strides), np.nan)
+    return np.asarray(np.interp(at_s, time_s, pitch_rad + leaning_rad).mean(axis=1))
 
 
 def inclination_measures(

@@ -10,8 +10,9 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.gait.clocks import LegClocks, LegSteps, leg_clocks
 from core.gait.cycles import cycles_of, excursion_of_cycles, find_peak, range_of_cycles
 from core.gait.events import FootEvents, detect_events
-from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee
+from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee, shank_to_foot
 from core.gait.foot import FootMotion
+from core.gait.inclination import tilt_by_speeding_up
 from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
@@ -94,6 +95,9 @@ def gait_in(
             **foot_measures(mine, time_s, pitch_rad[side]),
             **inclination_measures(mine, time_s, leaning),
         }
+        if Segment.SHANK in leaning:
+            shank_rad = leaning[Segment.SHANK] + tilt_by_speeding_up(mine, time_s)
+            parameters["shank_to_foot_in_swing_rad"] = shank_to_foot(mine, time_s, pitch_rad[side], shank_rad)
         gait[side] = SideGait(
             tuple(found),
             mine,

@@ -54,7 +54,7 @@ class DistanceSource(StrEnum):
     FOUND_LAPS = "found_laps"  # laps that the turns show, of the length that was entered
 
 
-class Part(StrEnum):
+class PartOfUpAndGo(StrEnum):
     """The parts of an up and go, in order. The values are the words of timed_test.csv."""
 
     RISE = "rise"
@@ -69,7 +69,7 @@ class Part(StrEnum):
 class UpAndGoPart:
     """One part of an up and go, on the recording's clock; NaN where a border was not found."""
 
-    part: Part
+    part: PartOfUpAndGo
     start_s: float
     end_s: float
 

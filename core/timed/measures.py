@@ -31,7 +31,7 @@ class MeanOfAttempts:
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class WalkingPace:
     """Walking speed, m/s, over a whole test and over each third of it, pauses included; NaN where not measured."""
 
     speed_m_s: float
@@ -57,16 +57,16 @@ def counted_figure(test: TimedTest) -> float:
     return figure_of(test) if test.is_valid else math.nan
 
 
-def pace_of(test: TimedTest) -> Pace:
+def pace_of(test: TimedTest) -> WalkingPace:
     """Give the speed over a walked test and its thirds; NaN of rises, which lead nowhere."""
-    return Pace(test.speed_m_s, tuple(one.speed_m_s for one in test.thirds))
+    return WalkingPace(test.speed_m_s, tuple(one.speed_m_s for one in test.thirds))
 
 
-def mean_pace(tests: Iterable[TimedTest]) -> Pace:
+def mean_pace(tests: Iterable[TimedTest]) -> WalkingPace:
     """Average the pace of the attempts that are valid, each third over those that have it."""
     paces = [pace_of(test) for test in tests if test.is_valid]
     thirds = zip(*(pace.thirds_m_s for pace in paces if pace.thirds_m_s), strict=False)
-    return Pace(
+    return WalkingPace(
         mean_of_attempts(pace.speed_m_s for pace in paces).mean,
         tuple(mean_of_attempts(values).mean for values in thirds),
     )

@@ -63,7 +63,7 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
         missing.append(NotMeasured.NO_FEET)
     walked = way.way_at(end_s) - origin_of(way, start_s) if has_distance else math.nan
     inside = tuple(t for t in turns_of(way) if start_s <= t.middle_s <= end_s)
-    course = _course(way, seat, planned, inside, (start_s, end_s), walked) if is_whole else NO_COURSE
+    course = _course(way, seat, planned, inside, (start_s, end_s), walked) if is_whole else NOT_WALKED
     thirds_s = np.linspace(start_s, end_s, THIRDS + 1).tolist() if is_whole else []
     return TimedTest(
         protocol=planned.protocol,
@@ -102,7 +102,7 @@ def _parts(
 
 
 @dataclass(frozen=True, slots=True)
-class _Course:
+class _Walked:
     """Which distance counts, and what the course was."""
 
     distance_m: float = math.nan
@@ -112,7 +112,7 @@ class _Course:
     checked: Checked = NOT_CHECKED
 
 
-NO_COURSE = _Course()
+NOT_WALKED = _Walked()
 
 
 def _course(
@@ -122,12 +122,12 @@ def _course(
     turns: tuple[Turn, ...],
     span_s: tuple[float, float],
     walked_m: float,
-) -> _Course:
+) -> _Walked:
     """The distance that counts, and the course held against the way of the feet."""
     definition = DEFINITIONS[planned.protocol]
     if definition.course_m is not None:
         course_m = planned.course_m or definition.course_m
-        return _Course(
+        return _Walked(
             walked_m, walked_m, course_m=course_m, checked=check_up_and_go(way, seat, turns, span_s, course_m)
         )
     if definition.length_m is not None:
@@ -135,25 +135,25 @@ def _course(
         if planned.end_key_s is None:
             found_m = length_m if math.isfinite(walked_m) else math.nan
             checked = Checked(math.nan, check_straight(turns))
-            return _Course(found_m, found_m, course_m=length_m, checked=checked)
+            return _Walked(found_m, found_m, course_m=length_m, checked=checked)
         reasons = (*check_straight(turns), *length_reasons(walked_m, length_m))
-        return _Course(length_m, walked_m, DistanceSource.TAPE, length_m, Checked(walked_m, reasons))
+        return _Walked(length_m, walked_m, DistanceSource.TAPE, length_m, Checked(walked_m, reasons))
     if definition.duration_s is not None and planned.lap_m is not None:
         return _by_laps(laps_of(way, turns, *span_s), planned, walked_m)
-    return _Course(walked_m, walked_m)
+    return _Walked(walked_m, walked_m)
 
 
-def _by_laps(laps: Laps, planned: PlannedTest, walked_m: float) -> _Course:
+def _by_laps(laps: Laps, planned: PlannedTest, walked_m: float) -> _Walked:
     """Laps of an entered length: as many as were entered, else as many as were found."""
     lap_m = planned.lap_m or math.nan
     found_m = laps.completed * lap_m + min(laps.rest_m, lap_m)
     typed_m = math.nan if planned.typed_laps is None else planned.typed_laps * lap_m + (planned.rest_m or 0.0)
     checked = check_laps(laps, lap_m, typed_m, found_m, lap_m if planned.rest_m is None else 0.0)
     if math.isfinite(typed_m):
-        return _Course(typed_m, walked_m, DistanceSource.TYPED, lap_m, checked)
+        return _Walked(typed_m, walked_m, DistanceSource.TYPED, lap_m, checked)
     if math.isfinite(found_m) and laps.completed:
-        return _Course(found_m, walked_m, DistanceSource.FOUND_LAPS, lap_m, checked)
-    return _Course(walked_m, walked_m, course_m=lap_m, checked=checked)
+        return _Walked(found_m, walked_m, DistanceSource.FOUND_LAPS, lap_m, checked)
+    return _Walked(walked_m, walked_m, course_m=lap_m, checked=checked)
 
 
 def _by_keys(start_s: float, end_s: float, planned: PlannedTest) -> tuple[float, float]:

@@ -138,9 +138,9 @@ def laps_of(way: BodyWay, turns: tuple[Turn, ...], start_s: float, end_s: float)
     ends_s = [start_s, *(turn.middle_s for turn in abouts), end_s]
     lengths, rest_m = [], math.nan
     for number, (from_s, to_s) in enumerate(pairwise(ends_s)):
-        _, place = place_at(way, from_s, to_s)
-        if len(place) < 2 or not way.is_whole_in(from_s, to_s):
+        if not way.is_whole_in(from_s, to_s):
             continue
+        _, place = place_at(way, from_s, to_s)
         is_first, is_last = number == 0, number == len(abouts)
         length_m = _between(place, is_round_first=not is_first, is_round_last=not is_last)
         if is_last:
@@ -164,9 +164,9 @@ def _is_unseen(way: BodyWay, start_s: float, end_s: float) -> bool:
 
 def _between(place: FloatArray, *, is_round_first: bool, is_round_last: bool) -> float:
     """From cone to cone, m, of the way (n, 2) from the middle of the turn round one to that round the other."""
-    ahead = place[-1] - place[0]
+    ahead = place[-1] - place[0] if len(place) else np.zeros(2)
     length_m = float(np.linalg.norm(ahead))
-    if length_m <= 0.0:
+    if length_m <= 0.0:  # it ends in the turn
         return 0.0
     ahead = ahead / length_m
     # of each loop half is seen here, so that its width is half of a whole one's

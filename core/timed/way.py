@@ -32,7 +32,7 @@ LOST_SWING_S = 1.5  # beside a silence a swing may be missing
 TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides turn a foot by up to 5 deg
 MIN_TURN_RAD = np.deg2rad(60.0)
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
-STANDS_SHARE = 1.2  # of a stride: no walking foot stands for longer
+LONGEST_STANCE = 1.2  # of a stride: no foot is longer on the floor in walking
 PIVOT_RAD, PIVOT_EDGE = np.deg2rad(10.0), 0.1  # a foot that turned so far has turned, from a tenth to nine tenths of it
 MAX_ARC_RAD = np.deg2rad(150.0)
 USUAL_STRIDE_S = 1.2  # where no stride shows it
@@ -215,7 +215,7 @@ def _lost(foot: ReceivedFoot, steps: FootSteps, stride_s: float) -> list[float]:
     for (_, gap_s), (again_s, _) in pairwise(foot.received_s):
         landed = steps.contact_s[steps.contact_s <= again_s]
         left = steps.toe_off_s[steps.toe_off_s >= gap_s]
-        if len(landed) and len(left) and left[0] - landed[-1] > STANDS_SHARE * stride_s:
+        if len(landed) and len(left) and left[0] - landed[-1] > LONGEST_STANCE * stride_s:
             lost.append(gap_s)
     return lost
 
@@ -306,6 +306,7 @@ def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
 
 
 def usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
+    """Give the median time of a stride, s; 1.2 s where no stride shows it."""
     times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in feet.values())])
     return float(np.median(times[times < MAX_STRIDE_S])) if np.any(times < MAX_STRIDE_S) else USUAL_STRIDE_S
 

@@ -114,6 +114,11 @@ MEASURES = (
         )
     ),
     FittingMeasure(
+        "shank_to_foot_in_swing_deg",
+        "mean angle of the foot against the shank, dorsiflexion positive, from a quarter of swing to 85 % of it",
+        f"{_RELATIVE}. Between two walks with the sensors left on it is how the foot was set, if no joint moves there",
+    ),
+    FittingMeasure(
         "step_time_s",
         "from the other foot's initial contact to this foot's, which ends the stride; compared between the legs",
         "Nothing where the clocks of both legs are not tied",

@@ -28,6 +28,7 @@ FITTING = columns_of(ParameterFile.FITTING)  # what they mean: core.verdicts.fit
 OF_HIPS = columns_of(ParameterFile.PELVIS)
 EXCURSIONS_BY_COLUMN = {f"{excursion.name}_deg": excursion for excursion in EXCURSIONS}  # those of peaks.csv
 SEGMENTS = ("shank", "thigh")
+SHANK_TO_FOOT = "shank_to_foot_in_swing_deg"
 ABDUCTION = ("hip_abduction", "hip_adduction")
 OF_BOTH = (*columns_of(ParameterFile.WALK), SPEED)
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
@@ -62,7 +63,8 @@ def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
         found = verdicts.joint(joint)
         if name.startswith(SEGMENTS):  # read at events of the foot
             parts = (found.height if required is QuantityClass.HEIGHT else found.shape, found.sign)
-            return together((*parts, verdicts.leg(side).timing))
+            of_foot = (verdicts.leg(side).distance,) if name == SHANK_TO_FOOT else ()  # its pitch too
+            return together((*parts, verdicts.leg(side).timing, *of_foot))
         if required is QuantityClass.SHAPE:
             return found.shape
         return together((found.height if required is QuantityClass.HEIGHT else found.shape, found.sign))

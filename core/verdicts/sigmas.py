@@ -122,6 +122,7 @@ _LEFT_ON: Mapping[QuantityKind, Sigma] = {
     _Q.SEGMENT_SHAPE: Sigma(_OF_KNEE, 1.0),
     _Q.SEGMENT_HEIGHT: Sigma(_OF_KNEE, 1.2),
     _Q.KNEE_TIMING: Sigma(_OF_STANCE, 0.55),
+    _Q.SET_ANGLE: Sigma(_WALKS, 0.25),
 }
 _NOTHING = Sigma(Source("one recording: nothing lies between", "one", 1))
 _STEPS = Sigma(_BIAS, 0.018)  # of step time; each mean with its own leg's events

@@ -250,7 +250,7 @@ class UpAndGo:
         Where the cone is, and how far from its middle the body goes round it. A line is turned on closely.
     overshoot_m
         So much further the patient goes before the turn; below zero, the turn is before the cone.
-    stands_at_m
+    before_chair_m
         Where the body is when it has risen.
     first_step_s
         From the end of the rise to the first toe-off; below zero the patient walks off before being upright.
@@ -269,7 +269,7 @@ class UpAndGo:
     cone_m: float = 3.0
     clearance_m: float = 0.35
     overshoot_m: float = 0.0
-    stands_at_m: float = 0.15
+    before_chair_m: float = 0.15
     first_step_s: float = 0.4
     sits_after_s: float = 0.3
     turn_s: float = 2.5
@@ -300,7 +300,7 @@ ON_THE_PATH = FeetInTurns()
 class TimedCourse:
     """Everything one simulated course depends on. Within a session sensors and tissue are the session's.
 
-    `is_joined`: the patient stands at either end, and sits down first and rises last where the test is from a chair: so
+    `is_joined`: the patient is standing at either end: sits down first and rises last if the test is from a chair; so
     a recording of standing can be played before it and after it.
     `silent_s`: from when to when a site's sensor sends nothing; not within a session.
     `manner_of_side`: sides that walk in another manner than the ordinary one.

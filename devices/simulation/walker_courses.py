@@ -43,8 +43,8 @@ from devices.simulation.walker_pelvis import PelvisMotion, pelvis_poses
 from devices.simulation.walker_plan import plan_standing
 from devices.simulation.walker_route import (
     LEAST_STRAIGHT_M,
-    Pace,
     Piece,
+    StepPace,
     about,
     before_turn,
     bends_of,
@@ -387,7 +387,7 @@ def _to_and_fro(course: TimedCourse, lasts_s: float, rng: np.random.Generator) -
     return bouts
 
 
-def _stretch(pace: Pace, length_m: float, done: float, rng: np.random.Generator) -> list[Piece]:
+def _stretch(pace: StepPace, length_m: float, done: float, rng: np.random.Generator) -> list[Piece]:
     count = max(1, round(length_m / 3.0))
     return [straight(pace, length_m / count, done, rng) for _ in range(count)]
 
@@ -396,9 +396,9 @@ def _gaits(course: TimedCourse) -> Mapping[Side, Gait]:
     return gaits_of(course.speed_m_s, course.manner_of_side)
 
 
-def _pace(course: TimedCourse) -> Pace:
+def _pace(course: TimedCourse) -> StepPace:
     gait = _gaits(course)[Side.LEFT]  # strides are those of both
-    return Pace(0.5 * gait.stride_m, 0.5 * gait.stride_s, course.slowing, course.hesitates)
+    return StepPace(0.5 * gait.stride_m, 0.5 * gait.stride_s, course.slowing, course.hesitates)
 
 
 def _straight(course: TimedCourse, way_m: float, done: float, rng: np.random.Generator) -> list[CourseStep]:

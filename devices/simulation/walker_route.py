@@ -19,7 +19,7 @@ SHORT_M = 0.28  # a step before a turn, of a patient who hesitates
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class StepPace:
     """A patient's steps on the straight, and how much slower they are at the end of the course."""
 
     step_m: float
@@ -65,7 +65,7 @@ def bends_of(pieces: Sequence[Piece]) -> list[Bend]:
     return bends
 
 
-def straight(pace: Pace, length_m: float, done: float, rng: np.random.Generator) -> Piece:
+def straight(pace: StepPace, length_m: float, done: float, rng: np.random.Generator) -> Piece:
     """Straight on for exactly so far."""
     factor = pace.factor(done)
     count = max(1, round(length_m / (pace.step_m * factor)))
@@ -75,7 +75,7 @@ def straight(pace: Pace, length_m: float, done: float, rng: np.random.Generator)
     return Piece(tuple(CourseStep(a, b) for a, b in zip(lengths.tolist(), times.tolist(), strict=True)))
 
 
-def before_turn(pace: Pace, length_m: float, done: float, rng: np.random.Generator) -> list[Piece]:
+def before_turn(pace: StepPace, length_m: float, done: float, rng: np.random.Generator) -> list[Piece]:
     """Straight on up to a turn: a patient who hesitates waits before it, and takes two short steps."""
     if not pace.hesitates:
         return [straight(pace, length_m, done, rng)]
@@ -88,7 +88,13 @@ def before_turn(pace: Pace, length_m: float, done: float, rng: np.random.Generat
 
 
 def turn(
-    pace: Pace, length_m: float, turn_rad: float, rng: np.random.Generator, *, least_s: float = 2.5, early: float = 0.0
+    pace: StepPace,
+    length_m: float,
+    turn_rad: float,
+    rng: np.random.Generator,
+    *,
+    least_s: float = 2.5,
+    early: float = 0.0,
 ) -> Piece:
     """Turn on a way of exactly so long, in at least so much time."""
     fewest = (least_s / pace.step_s, length_m / (TURNING_SHARE * pace.step_m), abs(turn_rad) / STEP_TURN_RAD)
@@ -122,12 +128,12 @@ def about(rng: np.random.Generator) -> float:
     return float(rng.choice([-1.0, 1.0]) * (np.pi + rng.normal(0.0, np.deg2rad(6.0))))
 
 
-def up_and_go_pieces(course: TimedCourse, pace: Pace, rng: np.random.Generator) -> list[Piece]:
+def up_and_go_pieces(course: TimedCourse, pace: StepPace, rng: np.random.Generator) -> list[Piece]:
     """From standing before the chair round the cone and back, to standing before the chair with the back to it."""
     how = course.up_and_go
     side = float(rng.choice([-1.0, 1.0]))
     if how.flaw is CourseFlaw.ONE_WAY:
-        ahead = before_turn(pace, how.cone_m - how.stands_at_m, 0.5, rng)
+        ahead = before_turn(pace, how.cone_m - how.before_chair_m, 0.5, rng)
         return [*ahead, turn(pace, how.sit_arc_m, side * np.pi, rng, least_s=how.sit_turn_s, early=how.early[1])]
     if how.flaw is CourseFlaw.TWICE:
         first = _round(how, pace, side, rng)
@@ -156,8 +162,8 @@ def _loop(how: UpAndGo, side: float, back_at_m: float, slant: float) -> _Loop:
     there, here = shape_of(out_rad, how.early[0]), shape_of(last_rad, how.early[1])
     turn_m = 2.0 * how.clearance_m / abs(shape_of(np.pi, how.early[0]).end_y)
     beyond_m = how.cone_m + how.clearance_m + how.overshoot_m
-    out_m = max(LEAST_STRAIGHT_M, beyond_m - how.stands_at_m - there.reach * turn_m)
-    x, y = how.stands_at_m + out_m + there.end_x * turn_m, there.end_y * turn_m
+    out_m = max(LEAST_STRAIGHT_M, beyond_m - how.before_chair_m - there.reach * turn_m)
+    x, y = how.before_chair_m + out_m + there.end_x * turn_m, there.end_y * turn_m
     c, s = np.cos(out_rad), np.sin(out_rad)
     x += (c * here.end_x - s * here.end_y) * how.sit_arc_m
     y += (s * here.end_x + c * here.end_y) * how.sit_arc_m
@@ -165,9 +171,9 @@ def _loop(how: UpAndGo, side: float, back_at_m: float, slant: float) -> _Loop:
     return _Loop(out_m, turn_m, out_rad, back_m, last_rad, float(side * (y + back_m * s)))
 
 
-def _round(how: UpAndGo, pace: Pace, side: float, rng: np.random.Generator) -> list[Piece]:
+def _round(how: UpAndGo, pace: StepPace, side: float, rng: np.random.Generator) -> list[Piece]:
     """Once round the cone, back to the chair, and about."""
-    back_at_m = how.stands_at_m + (float(rng.uniform(1.0, 1.8)) if how.flaw is CourseFlaw.OTHER_CHAIR else 0.0)
+    back_at_m = how.before_chair_m + (float(rng.uniform(1.0, 1.8)) if how.flaw is CourseFlaw.OTHER_CHAIR else 0.0)
     low, high = SLANTS_RAD
     for _ in range(30):
         slant = 0.5 * (low + high)
@@ -187,7 +193,7 @@ def draw_up_and_go(rng: np.random.Generator) -> UpAndGo:
     return UpAndGo(
         clearance_m=float(rng.uniform(0.12, 0.7)),
         overshoot_m=float(rng.uniform(-0.1, 0.35)),
-        stands_at_m=float(rng.uniform(0.0, 0.3)),
+        before_chair_m=float(rng.uniform(0.0, 0.3)),
         first_step_s=float(rng.uniform(-0.25, 1.0)),
         sits_after_s=float(rng.uniform(-0.3, 1.2)),
         turn_s=float(rng.uniform(1.8, 4.5)),

@@ -1,8 +1,9 @@
 """Sessions of six sensors and the bytes of their results, which a seventh sensor must not change.
 
 `OPENBLAS_NUM_THREADS=1 python -m tests.app.six_sensors`, as the tests have it, writes tests/golden/six_sensors.json
-again, which is to be done on purpose only (last when the sentences of findings changed). What a
-processor writes that calculates otherwise than those in it is put beside theirs, by the code of before as well.
+again, which is to be done on purpose only (last when the foot's angle in swing was added). What a processor writes that
+calculates otherwise is put beside: with NPY_DISABLE_CPU_FEATURES=X86_V4,AVX512_ICL,AVX512_SPR and
+OPENBLAS_CORETYPE=Haswell a newer one calculates as the older do.
 """
 
 import hashlib

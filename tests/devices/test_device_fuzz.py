@@ -1,12 +1,11 @@
-"""Damaged streams raise nothing, lose nothing whole and are not hoarded; clean ones are decoded fast enough."""
+"""Damaged streams raise nothing, lose nothing whole and are not hoarded."""
 
 import pytest
 
-from tests.safety.device_fuzz import drivers, fuzz, old_shimmer3, speed
+from tests.safety.device_fuzz import drivers, fuzz, old_shimmer3
 
 LONG = 30_000
 COUNTS = (2_000, pytest.param(LONG, marks=pytest.mark.endurance))
-LEAST_A_SECOND = 50_000
 
 
 @pytest.mark.parametrize("frames", COUNTS)
@@ -28,9 +27,3 @@ def test_after_a_burst_of_damage_it_is_in_step_again(name: str) -> None:
     outcome = fuzz(drivers()[name], LONG, seed=7, has_bursts=True)
     assert outcome.faults == []
     assert outcome.count["whole"] > 0.6 * LONG
-
-
-@pytest.mark.endurance
-@pytest.mark.parametrize("name", drivers())
-def test_fifty_thousand_messages_a_second_are_decoded(name: str) -> None:
-    assert speed(drivers()[name]) > LEAST_A_SECOND

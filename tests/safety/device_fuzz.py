@@ -62,6 +62,8 @@ class Fuzzed:
     most_held: int = MOST_HELD
     most_lost: int = 0
     """Of a thousand messages, where not every whole one beside damage can be distinguished from it."""
+    most_false: int | None = None
+    """Of a thousand messages damaged one by one, those received that nobody sent; None: nothing tells them apart."""
 
 
 def motion(number: int) -> Sequence[float]:
@@ -86,9 +88,11 @@ def drivers() -> dict[str, Fuzzed]:
     return {
         "x-IMU3, binary": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), True), True),
         "x-IMU3, text": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), False), True),
-        "WitMotion": Fuzzed(WitFramer, voice.sample, False),
-        "Xsens MTi": Fuzzed(lambda: MtiFramer(MTI), mti.sample, False),
-        "Shimmer3, with checksums": Fuzzed(lambda: Shimmer3Framer(SHIMMER3), shimmer3.sample, False, most_held=50),
+        "WitMotion": Fuzzed(WitFramer, voice.sample, False, most_false=1),
+        "Xsens MTi": Fuzzed(lambda: MtiFramer(MTI), mti.sample, False, most_false=1),
+        "Shimmer3, with checksums": Fuzzed(
+            lambda: Shimmer3Framer(SHIMMER3), shimmer3.sample, False, most_held=50, most_false=0
+        ),
         "CSV": Fuzzed(lambda: CsvFramer(COLUMNS), line, True),
     }
 
@@ -108,7 +112,7 @@ def old_shimmer3() -> Fuzzed:
 
 
 def fuzz(driver: Fuzzed, frames: int, seed: int, *, has_bursts: bool = False) -> Found:
-    """A message that was never sent is counted alone: nothing distinguishes it from a measurement."""
+    """A message that was never sent is a fault where the protocol has a checksum."""
     chance, found = random.Random(seed), Found(Counter(messages=frames))
     framer = driver.make()
     received: dict[Row, int] = {}
@@ -133,6 +137,9 @@ def fuzz(driver: Fuzzed, frames: int, seed: int, *, has_bursts: bool = False) ->
     found.count["whole, but lost"] = len(expected - received.keys())
     if found.count["whole, but lost"] > driver.most_lost * frames / 1000:
         found.faults.append(f"{found.count['whole, but lost']} whole messages lost")
+    most_false = None if has_bursts else driver.most_false
+    if most_false is not None and found.count["that were none"] > most_false * frames / 1000:
+        found.faults.append(f"{found.count['that were none']} messages received that nobody sent")
     if found.count["bytes held at most"] > driver.most_held:
         found.faults.append(f"{found.count['bytes held at most']} bytes held")
     if not framer.received.damaged:

@@ -63,6 +63,7 @@ def _measures(
     least = float(knee[late].min())
     arrived = time_s[late][np.argmax(knee[late] <= least + EXTENDED_DEG)]
     rising = slice(*np.searchsorted(time_s, (rise, 0.5 * (off + end))))
+    unbent = slice(*np.searchsorted(time_s, (off + 0.25 * (end - off), off + 0.85 * (end - off))))
     shank = at(lean["shank"])
     measures = {
         "knee_while_loading_deg": float(knee[share(0.05, 0.3)].max()) - at(knee)(start),
@@ -78,6 +79,7 @@ def _measures(
         "shank_heel_rocker_deg": shank(full) - shank(start),
         "shank_over_flat_foot_deg": shank(rise) - shank(full),
         "shank_forefoot_rocker_deg": shank(off) - shank(rise),
+        "shank_to_foot_in_swing_deg": float((pitch + lean["shank"])[unbent].mean()),
     }
     for segment, leaning in lean.items():
         middle = 0.5 * (start + off)

@@ -97,8 +97,11 @@ def _day_of(started: str) -> str:
     return day(started) if started else tr("date not recorded")
 
 
-def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
-    """`shown` is the walk that the other pages are of: it belongs to the last part."""
+def comparison_page(comparison: Comparison, shown: Facts, *, has_fitting: bool) -> list[Block]:
+    """`shown` is the walk that the other pages are of: it belongs to the last part.
+
+    `has_fitting`: what was changed at the prosthesis has a page of its own.
+    """
     title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
     sides = [side for side in shown.first_and_second if side in comparison.sides]
     kinds = [kind for kind in JointKind if any(joint_of(kind, side) in comparison.joints for side in Side)]
@@ -114,7 +117,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         heading(title),
         paragraph(_what_else_changed(comparison)),
         _parts_table(comparison),
-        *_changes(comparison),
+        *([] if has_fitting else _changes(comparison)),
         *([legend(band, columns=3)] if band else []),
         figures(pictures, columns=3 if has_hips else 2),
         _table(comparison, shown, sides),
@@ -155,7 +158,7 @@ def _parts_table(comparison: Comparison) -> Block:
 
 
 def _changes(comparison: Comparison) -> list[Block]:
-    """What was turned at the prosthesis before each condition, and that its walks may not show it."""
+    """Return what was turned before each condition, and that walks may not show it."""
     changed = [part for part in comparison.parts if part.alignment is not None]
     if not changed:
         return []

@@ -12,6 +12,7 @@ from app.reports.blocks import Block
 from app.reports.patient.comparison_page import comparison_of, comparison_page, not_compared_page
 from app.reports.patient.curves_page import curves_page
 from app.reports.patient.first_page import comment, first_page
+from app.reports.patient.fitting_page import fitting_page
 from app.reports.patient.method_page import words_page
 from app.reports.patient.time_page import time_page
 from app.reports.patient.timed_page import timed_page
@@ -19,6 +20,7 @@ from app.reports.patient.trend_page import trend_page
 from app.summary.comment_draft import comment_draft
 from app.summary.facts import Facts
 from app.summary.plain_text import isolated, plain, shortened
+from app.summary.prosthesis_fitting import fitting_of
 from app.summary.report_dates import day
 from app.summary.request import ReportRequest
 from app.wording.translation import spoken_language, tr
@@ -123,12 +125,14 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     session = request.visit.session
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
+    fitting = fitting_of(session, request.visit.analysis)
     of_walk, condition = pages_of_walk(facts), request.visit.recording(request.shown).condition
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts, comparison),
         *([tests] if (tests := timed_page(request, facts)) else []),
-        *([comparison_page(comparison, facts)] if comparison is not None else []),
+        *([fitting_page(fitting, facts)] if fitting is not None else []),
+        *([comparison_page(comparison, facts, has_fitting=fitting is not None)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
         *([course] if request.has_course_page and (course := trend_page(request.course, condition, facts)) else []),
     ]

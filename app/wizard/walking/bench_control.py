@@ -1,5 +1,6 @@
 """What joins the bench to the visit: which alignments are shown, what the next walk is walked with, what leads back."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
@@ -8,6 +9,7 @@ from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.summary.numbers_in_words import fixed
+from app.summary.set_angle import set_angle, set_angle_in_words
 from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
@@ -165,6 +167,12 @@ class Bench(QObject):
             is_simulated,
         )
 
+    def _with_set_angle(self, answer: Answer, found: Comparison, side: Side) -> Answer:
+        """Put before what belongs to an answer what was set at the foot, beside what is measured of it."""
+        shown = set_angle(found, found.parts[1], found.against, side, self.chain.changes)
+        words = set_angle_in_words(shown) if shown is not None else ""
+        return replace(answer, then=" ".join(filter(None, (words, answer.then))))
+
     @property
     def next_title(self) -> str:
         chain = self.chain
@@ -204,7 +212,7 @@ class Bench(QObject):
                 tr("Record a walk without a timed test or a target on the patient screen."),
             )
         if found is not None:
-            return bench_answer(found, side)
+            return self._with_set_angle(bench_answer(found, side), found, side)
         first = tr("{letter} is the starting point. Change one thing, enter the change, then record a walk.")
         return Answer(
             Outcome.OPEN, first.format(letter=shown.letter), tr("Enter the change before you record its walk.")

@@ -12,6 +12,7 @@ from app.exports.columns import COLUMNS, KNOWN, column_of
 from app.exports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tables, write_results
 from app.summary.differences import comparisons_of, rows_of, write_compared_cycles, write_differences
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
+from core.body import Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
@@ -25,17 +26,17 @@ Row = dict[str, str]
 
 @pytest.fixture(scope="module")
 def visit() -> tuple[Session, Analysis]:
-    required = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
-    session = session_of(WalkerSettings(seed=5, recordings=required))
-    conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
+    required = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5), Walk("walk 3", strides=5))
+    session = session_of(WalkerSettings(seed=5, recordings=required, prosthetic_side=Side.LEFT))
+    conditions = {"walk 1": "shoes", "walk 2": "barefoot", "walk 3": "barefoot"}
     note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
     turned = AlignmentChange("shoes", (PartChange(ProsthesisPart.PYLON, turns=0.5, height_mm=3.0, text="=1"),))
     recordings = tuple(
         replace(
             one,
             condition=conditions.get(one.name, ""),
-            note=note,
-            alignment=turned if one.name == "walk 2" else None,
+            note=note if one.name == "walk 2" else "",
+            alignment=turned if one.name in ("walk 2", "walk 3") else None,
             test=PlannedTest(TimedProtocol.TEN_METRES) if one.name == "walk 2" else None,
         )
         for one in session.recordings
@@ -75,7 +76,7 @@ def test_every_column_of_every_table_is_reported_of_and_no_other(out: Path) -> N
     assert files == {
         *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
         *("peaks.csv", "alignments.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
-        *("fitting.csv", "fitting_means.csv", "goals.csv", "timed_test.csv"),
+        *("fitting.csv", "fitting_means.csv", "goals.csv", "timed_test.csv", "set_angles.csv"),
     }
     assert (COLUMNS,) in TAKEN
 
@@ -139,7 +140,8 @@ def test_a_column_that_nobody_described_is_an_error() -> None:
 
 def test_what_was_turned_is_reported_in_a_table_and_beside_its_walk(out: Path) -> None:
     with (out / "alignments.csv").open(newline="", encoding="utf-8") as file:
-        (row,) = csv.DictReader(file)
+        row, again = csv.DictReader(file)
+    assert again["walk"] == "walk 3"
     assert (row["walk"], row["condition"], row["since"], row["part"]) == ("walk 2", "barefoot", "shoes", "pylon")
     assert (row["angle_deg"], row["turns"], row["shift_mm"], row["height_mm"]) == ("", "0.5", "", "3")
     assert row["text"] == "'=1"  # which no spreadsheet works out
@@ -155,3 +157,4 @@ def test_where_nothing_was_changed_there_is_no_table_of_it(visit: tuple[Session,
     unchanged = replace(session, recordings=tuple(replace(one, alignment=None) for one in session.recordings))
     write_results(unchanged, analysis, tmp_path)
     assert not (tmp_path / "alignments.csv").exists()
+    assert not (tmp_path / "set_angles.csv").exists()

@@ -21,7 +21,7 @@ from core.session import RecordingKind, Session
 from core.timed.found import (
     NotMeasured,
     NotValid,
-    Part,
+    PartOfUpAndGo,
     Rise,
     Silence,
     Sitting,
@@ -109,9 +109,9 @@ def test_the_table_has_a_row_for_everything_that_was_found(visit: AnalysedVisit)
     assert rows(visit, None) == []
 
 
-def test_what_is_new_stands_after_what_was_there(visit: AnalysedVisit) -> None:
+def test_what_is_new_comes_after_what_was_there(visit: AnalysedVisit) -> None:
     assert HEADER[:19][-1] == "missing"  # no column of earlier versions has moved
-    parts = (UpAndGoPart(Part.RISE, 3.0, 4.25), UpAndGoPart(Part.WALK_OUT, 4.25, math.nan))
+    parts = (UpAndGoPart(PartOfUpAndGo.RISE, 3.0, 4.25), UpAndGoPart(PartOfUpAndGo.WALK_OUT, 4.25, math.nan))
     chair = replace(
         TWO,
         protocol=TimedProtocol.UP_AND_GO,
@@ -151,7 +151,7 @@ def test_of_five_rises_each_the_mean_and_the_slowest_have_a_row(visit: AnalysedV
 
 
 def test_the_summary_shows_parts_validity_and_rises(visit: AnalysedVisit) -> None:
-    chair = replace(TWO, parts=(UpAndGoPart(Part.TURN, 9.0, math.nan),), sittings=(Sitting(20.0, 21.5),))
+    chair = replace(TWO, parts=(UpAndGoPart(PartOfUpAndGo.TURN, 9.0, math.nan),), sittings=(Sitting(20.0, 21.5),))
     session, analysis = with_test(visit, replace(chair, not_valid=(NotValid.NO_TURN,), course_m=3.0))
     reported = summarise(analysis, session.recordings)["walks"]["walk 2"]["timed_test"]
     assert reported["parts"] == [{"part": "turn", "start_s": 9.0, "end_s": None, "time_s": None}]

@@ -3,15 +3,19 @@
 Curves drawn by hand, and segments turned by hand.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.body import Segment
+from core.body import Segment, Side
 from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee
-from core.gait.inclination import inclination, lean_about
+from core.gait.inclination import inclination, lean_about, tilt_by_speeding_up
 from core.gait.strides import Reason, Strides
 from core.samples import FloatArray
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import analysis_of, session_of
 
 PERCENT = np.arange(101.0)
 TIME_S = np.linspace(0.0, 4.0, 401)
@@ -124,3 +128,38 @@ def test_without_standing_the_differences_of_an_inclination_hold() -> None:
     found = inclination(lean, axis, None, 1)
     assert np.rad2deg(found[3] - found[0]) == pytest.approx(50.0)
     assert np.isnan(found[1])
+
+
+@pytest.mark.parametrize("turn_rad", [0.0, np.pi, -0.5 * np.pi])
+def test_a_rigid_foot_has_one_angle_to_its_shank_from_the_first_stride_to_the_last(turn_rad: float) -> None:
+    """Getting going, turning and stopping tilt the filter's vertical by degrees; the foot is as it was set."""
+    walk = Walk(strides=24, turn_rad=turn_rad)
+    settings = WalkerSettings(seed=3, recordings=(Standing(), FreeMotion(), walk), prosthetic_side=Side.LEFT)
+    gait = analysis_of(session_of(settings)).recordings[-1].gait[Side.LEFT]
+    angles_deg = np.rad2deg(gait.parameters["shank_to_foot_in_swing_rad"])
+    used = angles_deg[gait.strides.is_used]
+    assert len(used) >= 15
+    assert np.abs(used - np.median(used)).max() < 1.0
+
+
+def test_nothing_tilts_the_vertical_of_who_walks_all_the_time() -> None:
+    """A recording that begins and ends in the midst of a walk."""
+    start = np.arange(0.2, 20.0)
+    strides = replace(
+        two_strides(),
+        **{name: start + by for name, by in (("start_s", 0.0), ("full_contact_s", 0.1), ("heel_rise_s", 0.4))},
+        **{name: start + by for name, by in (("toe_off_s", 0.6), ("end_s", 1.0))},
+        **{name: np.full(20, value) for name, value in (("length_m", 1.3), ("clearance_m", 0.1))},
+        **{name: np.zeros(20) for name in ("climb_m", "turn_rad")},
+        bout=np.zeros(20, dtype=np.int64),
+        reason=(Reason.USED,) * 20,
+    )
+    time_s = np.linspace(0.0, 20.5, 2051)
+    assert tilt_by_speeding_up(strides, time_s) == pytest.approx(np.zeros(2051), abs=1e-6)
+    late_s = time_s - 5.0  # five seconds of standing before
+    assert np.rad2deg(tilt_by_speeding_up(strides, late_s)).max() > 1.0
+
+
+def test_strides_without_a_known_length_tilt_nothing() -> None:
+    strides = replace(two_strides(), length_m=np.full(2, np.nan))
+    assert not tilt_by_speeding_up(strides, TIME_S).any()

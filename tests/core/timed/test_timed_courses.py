@@ -11,7 +11,7 @@ from core.gait.strides import Reason
 from core.samples import RateKind
 from core.session import Recording, Session
 from core.signal.sensors import SensorTracks
-from core.timed.found import DistanceSource, NotMeasured, NotValid, Part, TimedTest, Validity
+from core.timed.found import DistanceSource, NotMeasured, NotValid, PartOfUpAndGo, TimedTest, Validity
 from core.timed.measures import counted_figure
 from core.timed.protocols import DEFINITIONS, PlannedTest, TimedProtocol
 from core.timed.timing import time_test
@@ -137,7 +137,7 @@ def test_up_and_go_from_leaving_the_seat_to_sitting_again(up_and_go: SimulatedCo
 
 def test_an_up_and_go_has_six_parts_and_is_held_against_its_course(up_and_go: SimulatedCourse) -> None:
     found = timed(up_and_go.session, TimedProtocol.UP_AND_GO)
-    assert [one.part for one in found.parts] == list(Part)
+    assert [one.part for one in found.parts] == list(PartOfUpAndGo)
     for one in found.parts:
         planned_s = up_and_go.truth.parts_s[one.part]
         assert (one.start_s, one.end_s) == pytest.approx(planned_s, abs=0.3)
@@ -180,7 +180,7 @@ def test_without_feet_a_course_is_not_checked_and_its_walked_parts_are_missing(u
     found = timed(with_course(up_and_go.session, replace(course, imu=thighs)), TimedProtocol.UP_AND_GO)
     assert (found.validity, found.is_valid) == (Validity.NOT_CHECKED, True)
     known = {one.part for one in found.parts if np.isfinite(one.time_s)}
-    assert known == {Part.RISE, Part.SIT}
+    assert known == {PartOfUpAndGo.RISE, PartOfUpAndGo.SIT}
 
 
 def test_a_swing_lost_in_a_gap_leaves_the_course_unchecked_and_the_turns_unknown(up_and_go: SimulatedCourse) -> None:
@@ -198,7 +198,7 @@ def test_a_swing_lost_in_a_gap_leaves_the_course_unchecked_and_the_turns_unknown
     unknown = [one for one in found if one.validity is Validity.NOT_CHECKED]
     assert unknown  # some of these gaps lie in a swing
     for one in unknown:
-        assert {part.part for part in one.parts if np.isfinite(part.time_s)} == {Part.RISE, Part.SIT}
+        assert {part.part for part in one.parts if np.isfinite(part.time_s)} == {PartOfUpAndGo.RISE, PartOfUpAndGo.SIT}
     assert all(one.is_valid for one in found)
 
 

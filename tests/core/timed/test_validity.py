@@ -95,6 +95,13 @@ def test_laps_are_measured_from_cone_to_cone_and_counted() -> None:
     assert check_laps(laps, 12.0, np.nan, found_m, 0.0).reasons == (NotValid.LAP_DIFFERS,)
 
 
+def test_a_test_that_ends_in_a_turn_has_no_rest() -> None:
+    way = drawn((10.0, 0.0), round_cone(0.4), (10.0, 0.0), round_cone(0.4), (3.0, 0.0))
+    turns = turns_of(way)
+    laps = laps_of(way, turns, 0.0, turns[1].middle_s + 0.01)
+    assert (laps.completed, laps.rest_m) == (2, 0.0)
+
+
 def test_a_way_without_turns_has_no_lap_length() -> None:
     way = drawn((30.0, 0.0))
     laps = laps_of(way, turns_of(way), 0.0, float(way.time_s[-1]))

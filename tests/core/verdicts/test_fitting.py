@@ -15,6 +15,7 @@ INSTANTS = ("initial_contact", "mid_stance", "toe_off")
 LEANING = {f"{segment}_at_{instant}_deg" for segment in ("shank", "thigh") for instant in INSTANTS}
 TURNING = {f"shank_{name}_deg" for name in ("heel_rocker", "over_flat_foot", "forefoot_rocker")}
 FOOT = {"foot_pitch_at_contact_deg", "foot_heel_rise_deg"}
+SET = {"shank_to_foot_in_swing_deg"}  # of shank and foot alike
 KNEE_SIGNED = {"knee_terminal_extension_deg", "knee_extended_before_contact_percent"}
 
 
@@ -35,13 +36,13 @@ def verdicts(
     ("found", "expected"),
     [
         (verdicts(), set()),
-        (verdicts(Joint.LEFT_KNEE, "height"), {*LEANING, "knee_terminal_extension_deg"}),
+        (verdicts(Joint.LEFT_KNEE, "height"), {*LEANING, *SET, "knee_terminal_extension_deg"}),
         (verdicts(Joint.LEFT_KNEE, "shape"), {*TURNING, "knee_extended_before_contact_percent"}),
-        (verdicts(Joint.LEFT_KNEE, "sign"), {*LEANING, *TURNING, *KNEE_SIGNED}),
+        (verdicts(Joint.LEFT_KNEE, "sign"), {*LEANING, *TURNING, *SET, *KNEE_SIGNED}),
         (verdicts(Joint.LEFT_ANKLE, "shape"), set()),
         (verdicts(Joint.RIGHT_KNEE, "sign"), set()),
-        (verdicts(timing=BAD), {*LEANING, *TURNING, "foot_flat_percent"}),
-        (verdicts(distance=BAD), FOOT),
+        (verdicts(timing=BAD), {*LEANING, *TURNING, *SET, "foot_flat_percent"}),
+        (verdicts(distance=BAD), {*FOOT, *SET}),
     ],
 )
 def test_a_measure_is_not_reported_where_what_it_rests_on_is(found: Verdicts, expected: set[str]) -> None:
@@ -49,7 +50,7 @@ def test_a_measure_is_not_reported_where_what_it_rests_on_is(found: Verdicts, ex
 
 
 def test_every_measure_is_defined_once_and_states_what_it_cannot() -> None:
-    assert {*LEANING, *TURNING, *FOOT, *KNEE_SIGNED, "foot_flat_percent"} == set(FITTING)
+    assert {*LEANING, *TURNING, *FOOT, *SET, *KNEE_SIGNED, "foot_flat_percent"} == set(FITTING)
     assert set(FITTING) <= set(BY_COLUMN) <= {*FITTING, *columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)}
     assert len(BY_COLUMN) == len(MEASURES)
     assert all(measure.definition and measure.cannot_say and measure.source for measure in MEASURES)
@@ -60,9 +61,17 @@ def test_every_measure_is_defined_once_and_states_what_it_cannot() -> None:
 
 
 def test_every_measure_of_fitting_is_judged_and_those_of_segments_keep_their_dagger() -> None:
-    """Feet were measured on people who came twice; of thigh and shank the knee's error is taken."""
+    """Feet were measured on people who came twice; of thigh and shank the knee's error is taken.
+
+    How a foot is set is judged with the sensors left on alone.
+    """
     assert set(FITTING) <= set(KINDS)
-    for name in FITTING:
+    (set_angle,) = SET
+    assert {kind for kind in ComparisonKind if sigma_of(set_angle, kind) is not None} == {
+        ComparisonKind.ATTACHED,
+        ComparisonKind.HALVES,
+    }
+    for name in (one for one in FITTING if one not in SET):
         for kind in ComparisonKind:
             sigma = sigma_of(name, kind)
             assert sigma is not None, (name, kind)

@@ -194,6 +194,7 @@ def test_every_absolute_angle_is_judged_as_a_height_and_every_movement_as_a_shap
     heights = ["at_initial_contact", "peak_deg", "minimum", "terminal_extension", "plantarflexion", "dorsiflexion"]
     heights += ["at_mid_stance", "at_toe_off"]
     angles = [name for name in BY_COLUMN if name.endswith("_deg") and not name.startswith(("hip", "pelvis", "foot"))]
+    angles.remove("shank_to_foot_in_swing_deg")  # with the sensors left on alone
     assert len(angles) > 20
     for name in angles:
         is_height = any(word in name for word in heights)

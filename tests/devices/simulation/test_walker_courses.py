@@ -121,7 +121,7 @@ def test_an_up_and_go_leads_round_its_cone_and_back_to_the_chair(cone_m: float, 
         how = replace(course.up_and_go, cone_m=cone_m, is_unwound=is_unwound, overshoot_m=0.0)
         last, far = np.linalg.norm(footholds(replace(course, up_and_go=how)), axis=1)
         assert last < 0.3
-        assert abs(far - (cone_m + how.clearance_m - how.stands_at_m)) < 0.35  # a foot is half a step from the body
+        assert abs(far - (cone_m + how.clearance_m - how.before_chair_m)) < 0.35  # a foot is half a step from the body
 
 
 def test_an_up_and_go_that_is_spoiled_leads_elsewhere() -> None:

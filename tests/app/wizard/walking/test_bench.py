@@ -175,6 +175,26 @@ def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(qtbot: QtB
     assert ("not compared" in stance) is is_biased
 
 
+def test_what_was_set_at_the_foot_is_stated_before_what_belongs_to_the_answer() -> None:
+    plantar = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, angle_deg=3.0),))
+    visit = bench_visit()
+    walks = visit.evaluation.analysis.recordings[:2]
+    for one, swing_deg in zip(walks, (5.0, 2.2), strict=True):
+        left = one.gait[Side.LEFT]
+        left.parameters["shank_to_foot_in_swing_rad"] = np.full(len(left.strides), np.deg2rad(swing_deg))
+    recordings = (WALKED[0], recording(2, "B", plantar))
+    every = [SimpleNamespace(details=one) for one in recordings]
+    visit.recordings = SimpleNamespace(every=every, walks=every)
+    visit.evaluation.session = Session(recordings)
+    visit.evaluation.analysis = replace(visit.evaluation.analysis, recordings=walks)
+    state = Bench(cast(Visit, visit)).state()
+    assert state is not None
+    assert state.answer.then.startswith("Set 3.0° plantarflexion, measured 2.8° (±0.7°). ")
+    without = Bench(cast(Visit, bench_visit())).state()
+    assert without is not None
+    assert "plantarflexion" not in without.answer.then
+
+
 def test_under_ten_strides_nothing_is_judged() -> None:
     outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
     assert (outcome, first) == (Outcome.OPEN, "B and A: too few strides to assess a change.")
