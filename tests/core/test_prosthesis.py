@@ -1,4 +1,4 @@
-"""Tests of what a stated prosthesis says of the joints of its side, and that it is kept as it was written."""
+"""Tests of what a stated prosthesis makes of the joints of its side, and that it is kept as it was written."""
 
 from typing import Any
 
