@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 
 
 class AmputationLevel(StrEnum):
@@ -24,13 +24,17 @@ class AmputationLevel(StrEnum):
     TRANSFEMORAL = "transfemoral"
     HIP_DISARTICULATION = "hip_disarticulation"
 
-    @property
-    def replaces_knee(self) -> bool:
-        return self in (self.KNEE_DISARTICULATION, self.TRANSFEMORAL, self.HIP_DISARTICULATION)
+    def replaces(self, kind: JointKind) -> bool:
+        """Whether the joint of this kind is the prosthesis's."""
+        levels, left_by = list(AmputationLevel), _LEFT_BY[kind]
+        return levels.index(self) > levels.index(left_by)
 
-    @property
-    def replaces_ankle(self) -> bool:
-        return self is not self.PARTIAL_FOOT
+
+_LEFT_BY = {  # the highest level that leaves the joint to the patient
+    JointKind.ANKLE: AmputationLevel.PARTIAL_FOOT,
+    JointKind.KNEE: AmputationLevel.TRANSTIBIAL,
+    JointKind.HIP: AmputationLevel.TRANSFEMORAL,
+}
 
 
 class KneeKind(StrEnum):
@@ -55,11 +59,11 @@ class FootKind(StrEnum):
 
     @property
     def has_joint(self) -> bool:
-        return self not in (self.SACH, self.ENERGY_STORING)
+        return self not in (FootKind.SACH, FootKind.ENERGY_STORING)
 
 
 class JointNature(StrEnum):
-    """What a knee or ankle is, for all that was stated of its side."""
+    """What a joint is, for all that was stated of its side."""
 
     NOT_STATED = "not_stated"  # of a side without a prosthesis: a person's, or a test bench's
     PROSTHETIC = "prosthetic"  # the prosthesis's, as far as is known: where no level is stated it may be the patient's
@@ -90,17 +94,18 @@ class Prosthesis:
     @property
     def has_knee(self) -> bool:
         """Whether the knee is known to be the prosthesis's."""
-        return self.level is not None and self.level.replaces_knee
+        return self.level is not None and self.level.replaces(JointKind.KNEE)
 
     @property
     def may_have_foot(self) -> bool:
-        return self.level is None or self.level.replaces_ankle
+        return self.level is None or self.level.replaces(JointKind.ANKLE)
 
     def nature_of(self, joint: Joint) -> JointNature:
-        """What a knee or ankle of its side is."""
-        if self.level is not None and not (self.level.replaces_knee if joint.is_knee else self.level.replaces_ankle):
+        """What a joint of its side is."""
+        if self.level is not None and not self.level.replaces(joint.kind):
             return JointNature.OWN
-        return JointNature.RIGID if self.has_rigid_foot and not joint.is_knee else JointNature.PROSTHETIC
+        is_rigid = self.has_rigid_foot and joint.kind is JointKind.ANKLE
+        return JointNature.RIGID if is_rigid else JointNature.PROSTHETIC
 
     @property
     def has_rigid_foot(self) -> bool:

@@ -52,7 +52,7 @@ class Patient:
         return {side: one for side, one in stated_only(self.prostheses).items() if side in self.prosthetic_sides}
 
     def nature_of(self, joint: Joint) -> JointNature:
-        """What a knee or ankle is, for all that is stated."""
+        """What a joint is, for all that is stated."""
         if joint.side not in self.prosthetic_sides:
             return JointNature.NOT_STATED
         return self.worn.get(joint.side, NOT_STATED).nature_of(joint)

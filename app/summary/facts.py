@@ -23,6 +23,7 @@ from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
+from core.prosthesis import JointNature
 from core.results import JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray
 from core.verdicts.model import Assessment, Verdict, Verdicts
@@ -264,10 +265,11 @@ def joint_of(kind: str, side: Side) -> Joint:
     return JointKind(kind).of(side)
 
 
-def role(facts: Facts, side: Side) -> str:
-    """Name a side with what is known of it, inside a sentence: "right (prosthetic)"."""
+def role(facts: Facts, side: Side, joint: Joint | None = None) -> str:
+    """Name a side with what is known of it, or of its `joint`, inside a sentence: "right (prosthetic)"."""
     patient = facts.visit.session.patient
-    if patient.prosthetic_side in (side, "both"):
+    is_own = joint is not None and patient.nature_of(joint) is JointNature.OWN
+    if side in patient.prosthetic_sides and not is_own:
         return tr("{side} (prosthetic)").format(side=side_name(side))
     if patient.affected_side in (side, "both"):
         return tr("{side} (affected)").format(side=side_name(side))

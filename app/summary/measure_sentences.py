@@ -131,7 +131,8 @@ def who_in_sentence(column: str, side: Side) -> str:
 def who_of_role(facts: Facts, side: Side, column: str) -> str:
     """The joint or leg that a measure is of, with what is known of the side."""
     joint = joint_of_column(column, side)
-    return role(facts, side) if joint is None else joint_of_role(role(facts, side), joint)
+    leg = role(facts, side, joint)
+    return leg if joint is None else joint_of_role(leg, joint)
 
 
 def joint_of_role(leg: str, joint: Joint) -> str:
@@ -160,7 +161,7 @@ def _figures(column: str, values: Sequence[float], decimals: int) -> list[str]:
 def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
     """How one leg's figure differs from the other's."""
     sides = facts.first_and_second
-    first, second = (role(facts, side) for side in sides)
+    first, second = (role(facts, side, joint_of_column(column, side)) for side in sides)
     value, other = (facts.value(side, column).mean for side in sides)
     return legs_sentence(column, found, (first, second), (value, other))
 

@@ -1,10 +1,10 @@
-"""Tests of what a stated prosthesis says of the joints of its side, and that it is kept as it was written."""
+"""Tests of what a stated prosthesis makes of the joints of its side, and that it is kept as it was written."""
 
 from typing import Any
 
 import pytest
 
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.prosthesis import (
     NOT_STATED,
     AmputationLevel,
@@ -26,7 +26,7 @@ EVERY = [
     for level in (None, *AmputationLevel)
     for knee in (None, *KneeKind)
     for foot in (None, *FootKind)
-    if (knee is None or (level is not None and level.replaces_knee))
+    if (knee is None or (level is not None and level.replaces(JointKind.KNEE)))
     and (foot is None or level is not AmputationLevel.PARTIAL_FOOT)
 ]
 
@@ -36,22 +36,22 @@ def left(prosthesis: Prosthesis, prosthetic_side: str = "left") -> Patient:
 
 
 @pytest.mark.parametrize(
-    ("level", "knee", "ankle"),
+    ("level", "hip", "knee", "ankle"),
     [
-        (None, PROSTHETIC, PROSTHETIC),
-        (AmputationLevel.PARTIAL_FOOT, OWN, OWN),
-        (AmputationLevel.ANKLE_DISARTICULATION, OWN, PROSTHETIC),
-        (AmputationLevel.TRANSTIBIAL, OWN, PROSTHETIC),
-        (AmputationLevel.KNEE_DISARTICULATION, PROSTHETIC, PROSTHETIC),
-        (AmputationLevel.TRANSFEMORAL, PROSTHETIC, PROSTHETIC),
-        (AmputationLevel.HIP_DISARTICULATION, PROSTHETIC, PROSTHETIC),
+        (None, PROSTHETIC, PROSTHETIC, PROSTHETIC),
+        (AmputationLevel.PARTIAL_FOOT, OWN, OWN, OWN),
+        (AmputationLevel.ANKLE_DISARTICULATION, OWN, OWN, PROSTHETIC),
+        (AmputationLevel.TRANSTIBIAL, OWN, OWN, PROSTHETIC),
+        (AmputationLevel.KNEE_DISARTICULATION, OWN, PROSTHETIC, PROSTHETIC),
+        (AmputationLevel.TRANSFEMORAL, OWN, PROSTHETIC, PROSTHETIC),
+        (AmputationLevel.HIP_DISARTICULATION, PROSTHETIC, PROSTHETIC, PROSTHETIC),
     ],
 )
 def test_the_level_decides_which_joints_are_the_patient_s(
-    level: AmputationLevel | None, knee: JointNature, ankle: JointNature
+    level: AmputationLevel | None, hip: JointNature, knee: JointNature, ankle: JointNature
 ) -> None:
     patient = left(Prosthesis(level))
-    assert (patient.nature_of(KNEE), patient.nature_of(ANKLE)) == (knee, ankle)
+    assert tuple(map(patient.nature_of, (Joint.LEFT_HIP, KNEE, ANKLE))) == (hip, knee, ankle)
     assert patient.nature_of(Joint.RIGHT_KNEE) is JointNature.NOT_STATED
 
 

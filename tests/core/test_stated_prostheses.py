@@ -49,7 +49,7 @@ def test_nothing_stated_and_what_is_stated_of_a_side_without_a_prosthesis_change
     }
 
 
-def test_only_certainty_and_what_is_said_of_the_side_follow_what_is_stated_of_it(walked: Session) -> None:
+def test_only_certainty_and_what_is_reported_of_the_side_follow_what_is_stated_of_it(walked: Session) -> None:
     alone, known = stated(walked, {}), stated(walked, {Side.LEFT: SPRINGY})
     assert known.prostheses == {Side.LEFT: SPRINGY}
     for before, after in zip(alone.recordings, known.recordings, strict=True):
@@ -65,7 +65,7 @@ def test_only_certainty_and_what_is_said_of_the_side_follow_what_is_stated_of_it
 
 
 @pytest.mark.parametrize(
-    ("one", "is_said"),
+    ("one", "is_reported"),
     [
         (Prosthesis(foot=FootKind.SACH), True),
         (SPRINGY, True),
@@ -73,14 +73,14 @@ def test_only_certainty_and_what_is_said_of_the_side_follow_what_is_stated_of_it
         (Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.HYDRAULIC_ANKLE), False),
     ],
 )
-def test_an_angle_is_said_to_be_the_foot_s_against_the_shank_where_the_foot_has_no_joint(
-    walked: Session, one: Prosthesis, is_said: bool
+def test_an_angle_is_reported_to_be_the_foot_s_against_the_shank_where_the_foot_has_no_joint(
+    walked: Session, one: Prosthesis, is_reported: bool
 ) -> None:
     found = stated(walked, {Side.LEFT: one})
-    assert ("foot_against_shank" in {finding.key for finding in found.findings}) is is_said
+    assert ("foot_against_shank" in {finding.key for finding in found.findings}) is is_reported
 
 
-def test_a_foot_that_has_no_sensor_is_said_nothing_of(walked: Session) -> None:
+def test_a_foot_that_has_no_sensor_is_reported_nothing_of(walked: Session) -> None:
     recordings = tuple(
         replace(one, imu={site: block for site, block in one.imu.items() if str(site) != "left_foot"})
         for one in walked.recordings
@@ -90,7 +90,7 @@ def test_a_foot_that_has_no_sensor_is_said_nothing_of(walked: Session) -> None:
 
 
 def test_a_rigid_leg_is_a_hinge_of_the_prosthesis_and_none_of_the_patient() -> None:
-    """Without tissue nothing in the data tells a person's knee from a hinge; whoever states the level does."""
+    """Without tissue nothing in the data separates a person's knee from a hinge; what is stated does."""
     rigid = session_of(replace(SETTINGS, tissue=Tissue.RIGID))
     knees = {
         name: stated(rigid, worn).recordings[-1].joints[Joint.LEFT_KNEE].sd_rad

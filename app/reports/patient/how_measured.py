@@ -44,10 +44,10 @@ def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], lis
         (tr("Calibration"), _calibration(facts)),
         (tr("Angles"), _angles(facts)),
         (tr("Events and strides"), _strides(facts)),
-        *([(tr("Prosthesis"), _prostheses(facts))] if facts.visit.analysis.prostheses else []),
     ]
     stated = [
         (tr("Accuracy"), _accuracy()),
+        *([(tr("Prosthesis"), _prostheses(facts))] if facts.visit.analysis.prostheses else []),
         *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
         (tr("Terms"), _words()),
         *([(tr("Error figures"), error_figures_in_words())] if in_use().study is not None else []),

@@ -7,7 +7,7 @@ from app.storage.edited_fields import patient_fields
 from app.wording.patients import about_and_device, person
 from app.wording.prostheses import prosthesis_words, worn_words
 from app.wording.translation import use_language
-from core.body import Side
+from core.body import JointKind, Side
 from core.prosthesis import NOT_STATED, AmputationLevel, FootKind, KneeKind, Prosthesis
 from core.session import Patient
 
@@ -47,8 +47,8 @@ def test_a_prosthesis_is_named_by_its_level_then_knee_and_foot(one: Prosthesis, 
 def test_every_kind_has_words_of_its_own(level: AmputationLevel, language: str) -> None:
     use_language(language)
     try:
-        knees = [None, *KneeKind] if level.replaces_knee else [None]
-        feet = [None, *FootKind] if level.replaces_ankle else [None]
+        knees = [None, *KneeKind] if level.replaces(JointKind.KNEE) else [None]
+        feet = [None, *FootKind] if level.replaces(JointKind.ANKLE) else [None]
         named = {prosthesis_words(Side.RIGHT, Prosthesis(level, knee, foot)) for knee in knees for foot in feet}
         assert len(named) == len(knees) * len(feet)
     finally:

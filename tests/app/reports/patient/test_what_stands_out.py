@@ -20,7 +20,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts, role
 from app.summary.goals import goal_sentence
 from app.summary.headline import headline_of
-from app.summary.measure_sentences import unit_and_decimals
+from app.summary.measure_sentences import unit_and_decimals, who_of_role
 from app.summary.measures import MEASURES, Measure
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.summary.what_stands_out import (
@@ -36,8 +36,9 @@ from app.wording.measures import name_in_sentence
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf, agreed_by
 from core.parameters import BETWEEN_LEGS, BY_COLUMN, ParameterFile, QuantityClass, columns_of
+from core.prosthesis import AmputationLevel, Prosthesis
 from core.results import Analysis, ZeroKind
-from core.session import Session
+from core.session import Patient, Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Difference, Judgement
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
@@ -602,3 +603,23 @@ def test_every_other_column_that_is_compared_between_the_legs_has_a_sentence(
 
 def test_between_the_legs_no_height_is_compared() -> None:
     assert not any(BY_COLUMN[column].rests_on is QuantityClass.HEIGHT for column in BETWEEN_LEGS)
+
+
+def test_only_a_joint_that_is_the_prosthesis_s_is_named_so(demo: ReportRequest) -> None:
+    def names(patient: Patient) -> list[str]:
+        visit = AnalysedVisit(replace(demo.visit.session, patient=patient), demo.visit.analysis)
+        facts = facts_of(replace(demo, visit=visit))
+        columns = ("knee_range_deg", "ankle_range_deg", "stance_percent")
+        return [who_of_role(facts, Side.LEFT, column) for column in columns]
+
+    alone = Patient(prosthetic_side="left")
+    prosthetic = ["left (prosthetic) knee", "left (prosthetic) ankle", "left (prosthetic)"]
+    assert names(alone) == prosthetic
+    for level, found in (
+        (AmputationLevel.TRANSFEMORAL, prosthetic),
+        (AmputationLevel.TRANSTIBIAL, ["left knee", *prosthetic[1:]]),
+        (AmputationLevel.PARTIAL_FOOT, ["left knee", "left ankle", prosthetic[2]]),
+    ):
+        assert names(replace(alone, prostheses={Side.LEFT: Prosthesis(level)})) == found
+    both = replace(alone, affected_side="left", prostheses={Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL)})
+    assert names(both)[0] == "left (affected) knee"
