@@ -60,8 +60,8 @@ class EntryFields(QWidget):
         switches: list[QWidget] = [*self.names.values(), *self.numbers.values()]
         for widget in (self.parts, *self.steppers.values(), self.words, *switches):
             widget.setParent(self)  # what is shown without one is a window, and takes the keys
-        for before, after in pairwise(self.tab_order):
-            QWidget.setTabOrder(before, after)
+        for one, other in pairwise(self.tab_order):
+            QWidget.setTabOrder(one, other)
         self._connect()
         self._arrange()
 

@@ -137,7 +137,7 @@ def shown(qtbot: QtBot, seed: int) -> Shown:
         if value and is_own:
             rows[name] = value
     frames = tuple(SimpleNamespace(curves=f.chart.curves, marks=f.chart.deviations) for f in view.frames)
-    return Shown(view.first.text(), view.then.text(), view._mark.isVisible(), rows, frames)
+    return Shown(view.first.text(), view.then.text(), view.is_marked, rows, frames)
 
 
 def row_of(sentence: str, rows: dict[str, str]) -> str:
@@ -244,7 +244,7 @@ def test_the_fittings_drawn_are_of_both_kinds(qtbot: QtBot) -> None:
 
 
 @pytest.mark.parametrize(
-    "told_otherwise",
+    "altered",
     [
         lambda page: replace(page, first=page.first.replace(" more than ", " less than ")),
         lambda page: replace(page, first=re.sub(r"(\d+\.\d+)°? more", lambda m: m[0].replace(m[1], "1.0"), page.first)),
@@ -257,8 +257,8 @@ def test_the_fittings_drawn_are_of_both_kinds(qtbot: QtBot) -> None:
         ),
     ],
 )
-def test_the_check_finds_what_does_not_agree(qtbot: QtBot, told_otherwise: Callable[[Shown], Shown]) -> None:
+def test_the_check_finds_what_does_not_agree(qtbot: QtBot, altered: Callable[[Shown], Shown]) -> None:
     page = next(page for seed in range(IN_EVERY_RUN) if " more than " in (page := shown(qtbot, seed)).first)
     check(page)
     with pytest.raises((AssertionError, StopIteration)):
-        check(told_otherwise(page))
+        check(altered(page))
