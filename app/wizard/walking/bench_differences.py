@@ -35,7 +35,7 @@ from core.verdicts.norms import MIN_STRIDES_FOR_SD
 
 PADDING = 12
 SCALE = 1.8  # errors, to either edge of a strip
-ROW, HEAD, LINE = 24, 20, 15
+ROW, HEAD, LINE, BETWEEN = 24, 20, 15, 4
 LINES_CLOSER = 7  # px: what two lines leave free of the room of one
 LETTERS_IN_LINE, LETTERS_BEFORE_COMMA = 24, 20
 STRIP = 58
@@ -48,7 +48,7 @@ class BenchDifferences(Card):
         super().__init__(padding=PADDING)
         self.title = Text(size=16, weight=SEMIBOLD)
         self.provisional = Text(size=12, weight=MEDIUM)
-        self.table = CellTable(tr("Differences"), row=ROW, head=HEAD)
+        self.table = CellTable(tr("Differences"), row=ROW, head=HEAD, padding=BETWEEN)
         self.cautions = Text(size=12, wraps=True)
         self.no_proof = Text(tr(NO_PROOF_BRIEF), size=12, tone="ink2", wraps=True)
         self.no_proof.setToolTip(tr(NO_PROOF))

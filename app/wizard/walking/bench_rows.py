@@ -82,7 +82,10 @@ def cautions_of(parts: Sequence[Part], *assessments: Callable[[Part], Assessment
             for reason in assessment(part).reasons:
                 if reason.verdict is Verdict.CARE and reason.gate != STRIDES_GATE:
                     letters.setdefault(gate_words(reason).why, []).append(part.letter)
-    return [f"{', '.join(dict.fromkeys(own))}: {why}" for why, own in letters.items()]
+    reasons: dict[str, list[str]] = {}
+    for why, own in letters.items():
+        reasons.setdefault(", ".join(dict.fromkeys(own)), []).append(why)
+    return [f"{called}: {' '.join(every)}" for called, every in reasons.items()]
 
 
 def cautions_of_table(found: Comparison, prosthetic: Side) -> list[str]:

@@ -84,6 +84,11 @@ class BenchView(QWidget):
         return [*self.tabs.segments, *self.alignments.fields.tab_order, self.differences.table]
 
     @property
+    def is_marked(self) -> bool:
+        """Whether the sentence has the mark of a change beyond its error."""
+        return not self._mark.isHidden()
+
+    @property
     def frames(self) -> list[ComparedFrame]:
         """Those of the prosthetic side: the knee's and the ankle's."""
         return [frame for frame in self._frames.values() if not frame.isHidden()]

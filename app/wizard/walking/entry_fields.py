@@ -58,11 +58,10 @@ class EntryFields(QWidget):
         self._grid.setContentsMargins(0, 0, 0, 0)
         scaled(self._grid.setSpacing, 8)
         switches: list[QWidget] = [*self.names.values(), *self.numbers.values()]
-        every: list[QWidget] = [self.parts, *self.steppers.values(), self.words, *switches]
-        for one in every:
-            one.setParent(self)  # what is shown without one is a window, and takes the keys
-        for first, second in pairwise(self.tab_order):
-            QWidget.setTabOrder(first, second)
+        for widget in (self.parts, *self.steppers.values(), self.words, *switches):
+            widget.setParent(self)  # what is shown without one is a window, and takes the keys
+        for one, other in pairwise(self.tab_order):
+            QWidget.setTabOrder(one, other)
         self._connect()
         self._arrange()
 

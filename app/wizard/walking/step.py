@@ -151,7 +151,7 @@ class WalkingStep(Step):
 
     @property
     def topic(self) -> str:
-        return "walking"
+        return "bench" if self.bench.is_shown and not self._visit.recordings.is_recording else "walking"
 
     def enter(self) -> None:
         self._is_in_sight = True

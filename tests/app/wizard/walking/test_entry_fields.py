@@ -104,7 +104,7 @@ def test_a_program_and_a_setting_are_typed_and_read_as_they_print(fields: EntryF
     assert entry.parts == (both,)
 
 
-def test_what_is_known_stands_for_what_was_not_typed_and_arrows_go_on_from_it(
+def test_what_is_known_is_the_value_before_where_nothing_is_typed_and_arrows_go_on_from_it(
     fields: EntryFields, entry: ChangeEntry
 ) -> None:
     entry.known = KnownStates({(KNEE, ""): "Walk 2", (KNEE, "swing flexion"): 50.0})
@@ -184,7 +184,7 @@ def walked(*reported: AlignmentChange | None) -> tuple[Recording, ...]:
         ((None, AlignmentChange("gone", (TO_2,)), None), "Alignment C", "", None),
     ],
 )
-def test_what_a_program_is_now_is_known_from_what_was_stated(
+def test_what_a_program_is_now_is_known_from_the_changes(
     reported: tuple[AlignmentChange | None, ...], returned_to: str, program: str, setting: float | None
 ) -> None:
     known = chain_of(walked(*reported), returned_to).known
