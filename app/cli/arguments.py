@@ -22,6 +22,8 @@ IMPORTED = (
     *("xdf", "matlab", "parquet", "csv"),
 )
 EXPORTED = ("xlsx", "c3d", "mot", "sto", "fhir", "bids-motion")
+SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
+LOCALES = {"en": (",", "."), "de": (";", ",")}  # what separates cells, and what is before a fraction
 MODELS = ("rajagopal2016", "gait2392")
 TYPED = ("device", "aids", "surface", "conditions", "changes")
 PAPERS = ("a4", "letter")
@@ -89,6 +91,13 @@ def worker_count(text: str) -> int:
     if not (text.isascii() and text.isdigit() and 0 < int(text) <= 1000):
         raise argparse.ArgumentTypeError(f"{text} is no number of workers")
     return int(text)
+
+
+def separator(text: str) -> str:
+    """An argument that is what separates cells, or its name."""
+    if text not in {**SEPARATORS, **dict.fromkeys(SEPARATORS.values())}:
+        raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(SEPARATORS)}")
+    return SEPARATORS.get(text, text)
 
 
 def limit_of(text: str) -> tuple[str, float]:

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 
+from app.cli.analyse import form_of
 from app.cli.arguments import DIFFERENCES
 from app.cli.places import read_place
+from app.exports.local_csv import rewrite_tables
 from app.exports.result_folder import written_beside
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
@@ -42,6 +44,7 @@ def run(args: argparse.Namespace, report: Report) -> list[str]:
         The table cannot be written.
     """
     _check_place(args.out)
+    form = form_of(args)
     visits = []
     for number, place in enumerate(args.sessions):
 
@@ -61,6 +64,7 @@ def run(args: argparse.Namespace, report: Report) -> list[str]:
         raise FileRefusedError(names, what, "Give two sessions, or one with two conditions")
     with written_beside(args.out) as folder:
         write_differences(rows, folder / DIFFERENCES)
+        rewrite_tables(folder, form)
         report(1.0, "writing")
     return [
         *(line for comparison in comparisons for line in _table(comparison, dict(args.limit))),

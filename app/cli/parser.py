@@ -16,6 +16,7 @@ from app.cli.arguments import (
     EXPORTED,
     IMPORTED,
     KINDS,
+    LOCALES,
     METHODS,
     MODELS,
     OF_LIBRARY,
@@ -23,12 +24,14 @@ from app.cli.arguments import (
     ONE_SESSION,
     PAPERS,
     PASSPHRASE_FILE,
+    SEPARATORS,
     TYPED,
     WHO,
     LibrarySession,
     limit_of,
     one_of,
     positive,
+    separator,
     session_place,
     worker_count,
 )
@@ -82,7 +85,25 @@ def _add_analyse(parser: argparse.ArgumentParser) -> None:
         parser,
         method="how joints are identified and which angle is the result (robust)",
         tau="time constant of the published fusion in seconds (2)",
-        no_report="write no report.pdf",
+        no_report="write neither report.pdf nor results.xlsx",
+    )
+    _add_form(parser)
+
+
+def _add_form(parser: argparse.ArgumentParser) -> None:
+    """How the tables are written for a spreadsheet; without them as ever."""
+    parser.add_argument(
+        "--sep",
+        type=separator,
+        metavar="SEP",
+        help=f"what separates the cells of CSV tables: {', '.join(SEPARATORS)} (comma; with --locale de, semicolon)",
+    )
+    parser.add_argument(
+        "--locale",
+        type=one_of(tuple(LOCALES)),
+        default="en",
+        metavar="LOCALE",
+        help="whose decimal sign CSV tables have: en, a point (the default), or de, a comma",
     )
 
 
@@ -141,6 +162,7 @@ def _add_compare(parser: argparse.ArgumentParser) -> None:
         help="a change that matters, such as knee_range_deg=5: in how many of 10 such measurements it is as large",
     )
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help=f"the folder for {DIFFERENCES}")
+    _add_form(parser)
 
 
 def _add_agree(parser: argparse.ArgumentParser) -> None:
@@ -243,7 +265,7 @@ def _add_batch(parser: argparse.ArgumentParser) -> None:
         parser,
         method="as of analyse (robust)",
         tau="as of analyse (2)",
-        no_report="write no report.pdf, which takes half of the time",
+        no_report="write neither report.pdf nor results.xlsx, which take half of the time",
     )
     parser.set_defaults(stopped="What is done stays in OUT. Give the same command again to go on.")
 

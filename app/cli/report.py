@@ -5,8 +5,9 @@ from datetime import datetime
 from pathlib import Path
 
 from app.cli.places import read_place
+from app.exports.spreadsheet import workbook
 from app.reports.patient.document import make_report
-from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
+from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, workbook_beside
 from app.summary.request import MAX_CONDITIONS, AnalysedVisit, ReportRequest
 from app.system.logs import version_of
 from app.system.progress import Report
@@ -25,6 +26,7 @@ def run(args: argparse.Namespace, progress: Report) -> list[str]:
         The report cannot be written.
     """
     check_report_place(args.out)
+    beside = workbook_beside(args.out)
     if len(args.walk) > MAX_CONDITIONS:
         what = f"{len(args.walk)} walks are too many for one report"
         raise FileRefusedError("--walk", what, f"Choose up to {MAX_CONDITIONS}")
@@ -43,7 +45,8 @@ def run(args: argparse.Namespace, progress: Report) -> list[str]:
     progress(1.0, "report")
     request = ReportRequest(visit, walks, now, version, comment, paper=args.paper, earlier=earlier)
     replace_report(make_report(request), args.out)
-    return [f"{args.out}: the report of {', '.join(walks)}."]
+    replace_report(workbook(visit.session, visit.analysis, args.paper), beside)
+    return [f"{args.out}: the report of {', '.join(walks)}.", f"{beside}: all figures of the session."]
 
 
 def _comment(file: Path | None) -> str:

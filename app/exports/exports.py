@@ -17,6 +17,7 @@ from app.exports.folder_pseudonyms import pseudonyms_of_folder
 from app.exports.opensim_motion import Model, write_motion
 from app.exports.opensim_orientations import write_orientations
 from app.exports.pseudonymised import Row, pseudonymised, what_leaves
+from app.exports.spreadsheet import write_spreadsheet
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
 from app.storage.journal.decoding import Decoders
@@ -42,7 +43,7 @@ class Format(StrEnum):
 
 _log = logging.getLogger(__name__)
 SPREADSHEET, BUNDLE = "gaitwright.xlsx", "fhir_bundle.json"
-NEEDED = {Format.XLSX: "openpyxl", Format.C3D: "ezc3d"}  # libraries of the extra `exports`
+NEEDED = {Format.C3D: "ezc3d"}  # libraries of the extra `exports`
 
 
 def check_formats(formats: Sequence[Format]) -> None:
@@ -157,8 +158,6 @@ def _write(session: Session, analysis: Analysis, formats: Sequence[Format], fold
 def _write_format(session: Session, analysis: Analysis, required: Format, folder: Path, model: Model) -> list[str]:
     """Write one format, and give a line for each file that is not written."""
     if required is Format.XLSX:
-        from app.exports.spreadsheet import write_spreadsheet  # openpyxl, which may be missing
-
         write_spreadsheet(session, analysis, folder / SPREADSHEET)
     elif required is Format.FHIR:
         write_bundle(session, analysis, folder / BUNDLE)

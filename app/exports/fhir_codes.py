@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import quote
 from uuid import NAMESPACE_URL, uuid5
 
+from app.exports.figures import DECIMALS_OF
 from core.body import Side
 from core.timed.protocols import TimedProtocol
 
@@ -20,7 +21,6 @@ PATIENTS = "urn:x-gaitwright:patient"
 URIS = "urn:ietf:rfc:3986"  # the system of identifiers that are URIs themselves
 UCUM = "http://unitsofmeasure.org"
 UCUM_OF = {"°": "deg", "%": "%", "s": "s", "m": "m", "m/s": "m/s", "steps/min": "/min"}
-DECIMALS = {"°": 1, "%": 1, "s": 3, "m": 3, "m/s": 3, "steps/min": 1}  # below the error of every figure of this unit
 SNOMED = "http://snomed.info/sct"
 LOINC = "http://loinc.org"
 LEGS = {
@@ -67,7 +67,7 @@ def code_of(name: str, words: str = "", side: Side | None = None) -> Mapping[str
 
 def quantity(value: float, unit: str) -> Mapping[str, Any]:
     """A figure with the digits that it can have."""
-    return {"value": round(value, DECIMALS[unit]) + 0.0, "unit": unit, "system": UCUM, "code": UCUM_OF[unit]}
+    return {"value": round(value, DECIMALS_OF[unit]) + 0.0, "unit": unit, "system": UCUM, "code": UCUM_OF[unit]}
 
 
 def instant(started: str) -> str:

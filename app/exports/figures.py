@@ -21,6 +21,7 @@ from core.verdicts.model import Assessment, Verdict
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 
 SIMULATED = "SIMULATED: nobody was measured."
+DECIMALS_OF = {"°": 1, "%": 1, "s": 3, "m": 3, "m/s": 3, "steps/min": 1, "mm": 1}  # below the error of each figure
 IN_ASCII = str.maketrans({"\N{DEGREE SIGN}": " deg", "\N{PLUS-MINUS SIGN}": "+/-", "\N{MINUS SIGN}": "-"})
 
 

@@ -159,10 +159,8 @@ def _beyond_limits(name: str, values_deg: FloatArray, limits_deg: tuple[float, f
     lines = []
     for limit_deg, beyond_deg in zip(limits_deg, (limits_deg[0] - values_deg, values_deg - limits_deg[1]), strict=True):
         if count := int(np.count_nonzero(beyond_deg > 0)):
-            most_deg = float(np.nanmax(beyond_deg))
-            lines.append(
-                f"Kept at the model's limit {limit_deg:g} deg: {name}, {count} rows, up to {most_deg:.1f} deg beyond."
-            )
+            beyond = f"{count} rows, up to {float(np.nanmax(beyond_deg)):.1f} deg beyond."
+            lines.append(f"Kept at the model's limit of {limit_deg:g} deg: {name}, {beyond}")
     return lines
 
 

@@ -49,12 +49,13 @@ ANGLES = "angles.csv"
 PEAKS = "peaks.csv"
 LOG = "session.rrd"
 REPORT = "report.pdf"
+WORKBOOK = "results.xlsx"  # beside each report
 OWN_SESSION = "session"  # the demonstration's recordings, inside the folder of its results
 VISITS, VISITS_CYCLES = "visits.csv", "visits_cycles.csv"  # where a report compares with an earlier visit
 TAKEN = tuple(
     (name,)
     for name in (
-        *(SUMMARY, LOG, REPORT, OWN_SESSION),
+        *(SUMMARY, LOG, REPORT, WORKBOOK, OWN_SESSION),
         *(PEAKS, FITTING_MEANS, ALIGNMENTS, SET_ANGLES, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS, GOALS, TIMED),
         *(VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )

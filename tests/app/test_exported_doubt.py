@@ -252,36 +252,31 @@ def in_xlsx(out: Path) -> dict[str, str]:
     required = OF_SIDES | {name: ("both", column) for name, column in BOTH.items()}
     stated = {}
     for name, key in required.items():
-        mean, status = summary[key]["mean"], summary[key]["status"]
-        assert isinstance(mean, NUMBER) or mean == NOT_REPORTED
+        mean, status = summary[key]["mean"], KEYS[summary[key]["status"]]
+        assert isinstance(mean, NUMBER) or mean is None
         stated[name] = stated_of_value(status, isinstance(mean, NUMBER))
     for side, column in OF_SIDES.values():
         cells = [row[column] for row in sheet(book, "Strides") if row["side"] == side and row["used"] == "true"]
-        is_not_reported = summary[side, column]["status"] == NOT_REPORTED
-        assert (
-            all(cell == NOT_REPORTED for cell in cells)
-            if is_not_reported
-            else any(isinstance(cell, NUMBER) for cell in cells)
-        )
+        is_not_reported = KEYS[summary[side, column]["status"]] == NOT_REPORTED
+        assert all(cell is None for cell in cells) if is_not_reported else any(isinstance(c, NUMBER) for c in cells)
     cycles = sheet(book, "Cycles")
     for name, joint in CURVES.items():
         (status,) = {row[f"{joint}_status"] for row in cycles}
         height, shape = (
-            {
-                NOT_REPORTED if row[f"{joint}_{what}"] == NOT_REPORTED else isinstance(row[f"{joint}_{what}"], NUMBER)
-                for row in cycles
-            }
-            for what in ("mean_deg", "shape_deg")
+            {isinstance(row[f"{joint}_{what}"], NUMBER) for row in cycles} for what in ("mean_deg", "shape_deg")
         )
         by_cells: dict[tuple[object, ...], str] = {
             (True, True): READ,
-            (NOT_REPORTED, True): SHAPE,
-            (NOT_REPORTED, NOT_REPORTED): NOT_REPORTED,
+            (False, True): SHAPE,
+            (False, False): NOT_REPORTED,
         }
         stated[name] = by_cells[*height, *shape]
         if stated[name] == READ:
-            stated[name] = status if status in (READ, CARE) else "contradicts itself"
+            stated[name] = KEYS[status] if KEYS[status] in (READ, CARE) else "contradicts itself"
     return stated
+
+
+KEYS = {"Good": READ, "Caution": CARE, "Not reported": NOT_REPORTED, "Not measured": "not_measured"}
 
 
 def sheet(book: Any, title: str) -> list[dict[str, Any]]:

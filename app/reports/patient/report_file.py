@@ -8,7 +8,8 @@ import tempfile
 from datetime import datetime
 from pathlib import Path
 
-from app.exports.result_folder import REPORT, VISITS, VISITS_CYCLES, describe_tables
+from app.exports.result_folder import REPORT, VISITS, VISITS_CYCLES, WORKBOOK, describe_tables
+from app.exports.spreadsheet import write_spreadsheet
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import make_report
 from app.summary.comparison import Contrast
@@ -18,16 +19,17 @@ from core.results import Analysis
 from core.session import Session
 from devices.files.refusal import FileRefusedError
 
-PDF = b"%PDF-"
+PDF, ZIP = b"%PDF-", b"PK\x03\x04"
 
 
 def write_report(session: Session, analysis: Analysis, folder: Path, made_at: datetime, version: str) -> None:
-    """Write `report.pdf` into a results folder, nothing without a walk; raises OSError."""
+    """Write `report.pdf` and `results.xlsx` into a results folder, nothing without a walk; raises OSError."""
     visit = AnalysedVisit(session, analysis)
     walks = default_walks(visit)
     if walks:
         request = ReportRequest(visit, walks, made_at, version)
         (folder / REPORT).write_bytes(make_report(request))
+        write_spreadsheet(session, analysis, folder / WORKBOOK)
 
 
 def write_visits(request: ReportRequest, folder: Path) -> None:
@@ -58,20 +60,33 @@ def check_report_place(out: Path) -> None:
     """Raise FileRefusedError where anything but a PDF is at `out`."""
     if out.is_dir():
         raise FileRefusedError(str(out), "this is a folder", "Give the report a file name, such as report.pdf")
-    if out.exists():
-        with out.open("rb") as file:
-            is_pdf = file.read(len(PDF)) == PDF
-        if not is_pdf:
-            raise FileRefusedError(str(out), "this already exists and is not a PDF", "Choose another --out")
+    if not _is_free_or(out, PDF):
+        raise FileRefusedError(str(out), "this already exists and is not a PDF", "Choose another --out")
 
 
-def replace_report(pdf: bytes, out: Path) -> None:
-    """Put a report in its place, whole or not at all; raises OSError."""
+def workbook_beside(out: Path) -> Path:
+    """The workbook's place beside a report's; raises FileRefusedError where anything but a workbook is there."""
+    place = out.with_name(WORKBOOK) if out.name == REPORT else out.with_suffix(".xlsx")
+    if place.is_dir() or not _is_free_or(place, ZIP):
+        raise FileRefusedError(str(place), "this already exists and is not a workbook", "Choose another --out")
+    return place
+
+
+def _is_free_or(place: Path, start: bytes) -> bool:
+    """Whether nothing is at a place, or a file that begins so."""
+    if not place.exists():
+        return True
+    with place.open("rb") as file:
+        return file.read(len(start)) == start
+
+
+def replace_report(content: bytes, out: Path) -> None:
+    """Put a report or a workbook in its place, whole or not at all; raises OSError."""
     out.parent.mkdir(parents=True, exist_ok=True)
     handle, beside = tempfile.mkstemp(prefix=f".{out.name}-", dir=out.parent)
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(pdf)
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
         Path(beside).replace(out)

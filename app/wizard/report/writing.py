@@ -7,7 +7,8 @@ from pathlib import Path
 from uuid import UUID
 
 from app.exports.exports import Format, export_from_library, preview_from_library
-from app.exports.result_folder import LOG, check_place, write_results, written_beside
+from app.exports.result_folder import LOG, WORKBOOK, check_place, write_results, written_beside
+from app.exports.spreadsheet import workbook
 from app.reports.patient.document import ReportPreview, make_report
 from app.reports.patient.letter import letter_pages, make_letter
 from app.reports.patient.report_file import check_report_place, replace_report, write_visits
@@ -62,6 +63,7 @@ class Documents:
                     write_log(export.session, export.analysis, beside / LOG)
                 if request is not None:
                     (beside / file_name(stored)).write_bytes(make_report(request))
+                    (beside / WORKBOOK).write_bytes(workbook(export.session, export.analysis, request.paper))
                     if LETTER in chosen:
                         (beside / file_name(stored, LETTER)).write_bytes(make_letter(request, export.letter_language))
                     if "csv" in chosen:

@@ -94,6 +94,7 @@ def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Pat
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "report.pdf",
+        "results.xlsx",
         "session.rrd",
         "summary.json",
         *(f"walk_1/{table}" for table in TABLES),

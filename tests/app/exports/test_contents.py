@@ -101,8 +101,13 @@ def test_sheets_can_be_read_on_a_screen(book: Any) -> None:
             assert sheet.column_dimensions[column[0].column_letter].width == width, (name, column[0].value)
     assert book["About"].column_dimensions["B"].width > 12
     assert len(book["Strides"][1]) > 26  # a column AA is one of them
-    assert all(row[4].number_format == "0.00###" for row in book["Summary"].iter_rows(min_row=2))
-    assert all(row[7].number_format == "General" for row in book["Summary"].iter_rows(min_row=2))
+    shown = {"°": "0.0", "%": "0.0", "s": "0.000", "m": "0.000", "m/s": "0.000", "steps/min": "0.0"}
+    rows = [row for row in book["Summary"].iter_rows(min_row=2) if row[4].value is not None]
+    assert {row[6].value for row in rows} == set(shown)
+    assert all(row[4].number_format == shown[row[6].value] for row in rows)
+    assert all(row[7].number_format == "General" for row in rows)
+    strides = {cell.value: column[1].number_format for column in book["Strides"].iter_cols() for cell in column[:1]}
+    assert (strides["knee_range_deg"], strides["stance_percent"], strides["start_s"]) == ("0.0", "0.0", "0.000")
 
 
 def test_columns_have_the_unit_that_their_name_ends_with(book: Any) -> None:

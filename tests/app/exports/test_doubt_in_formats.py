@@ -207,7 +207,8 @@ def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session,
         assert error > 0
         assert component(found[name, "left leg"], "error")["valueQuantity"]["value"] == pytest.approx(error, abs=0.05)
         assert sheet["left", name]["error"] == pytest.approx(error, rel=1e-14)
-        assert sheet["left", name]["status"] == walk["left"][f"{name}_status"]
+        words = {"read": "Good", "care": "Caution"}
+        assert sheet["left", name]["status"] == words[walk["left"][f"{name}_status"]]
     json.dumps(reported, allow_nan=False)
 
 
@@ -220,18 +221,26 @@ def test_a_workbook_has_no_number_where_a_figure_is_not_reported(
     for row in rows:
         reported = dict(zip(header, row, strict=True))
         is_right = reported["side"] == "right"
-        assert (reported["ankle_range_deg"] == "withheld") == is_right
-        assert (reported["knee_swing_peak_deg"] == "withheld") == is_right
-        assert reported["knee_range_deg"] != "withheld"
+        for name, status in (("ankle_range_deg", "ankle_shape_status"), ("knee_swing_peak_deg", "knee_height_status")):
+            assert (reported[name] is None) == (reported[status] == "Not reported") == is_right
+        assert isinstance(reported["knee_range_deg"], float)
     header, *rows = book["Cycles"].iter_rows(values_only=True)
     columns = dict(zip(header, zip(*rows, strict=True), strict=True))
-    not_reported = {name for name, cells in columns.items() if set(cells) == {"withheld"}}
-    assert not_reported == {
+    assert {name for name, cells in columns.items() if set(cells) == {None}} == {
         *("left_ankle_mean_deg", "right_knee_mean_deg", "right_knee_shape_deg"),
-        *("right_ankle_mean_deg", "right_ankle_shape_deg", "right_ankle_stride_sd_deg", "right_ankle_status"),
+        *("right_ankle_mean_deg", "right_ankle_shape_deg", "right_ankle_stride_sd_deg"),
     }
+    statuses = {name: set(cells) for name, cells in columns.items() if str(name).endswith("_status")}
+    assert statuses == {
+        "left_knee_status": {"Good"},
+        "left_ankle_status": {"Curve shape only"},
+        "right_knee_status": {"Range of motion only"},
+        "right_ankle_status": {"Not reported"},
+    }
+    grey = {cell.column for row in book["Cycles"].iter_rows(min_row=2) for cell in row if cell.fill.fill_type}
+    assert len(grey) == 6  # what is not reported is seen
     about = {row[0]: str(row[1]) for row in book["About"].iter_rows(values_only=True)}
     name = mixed.name
-    assert about[f"{name}, left knee, shape"] == "read"
-    assert about[f"{name}, right ankle, shape"].startswith("withheld: The calibration has an uncertainty of ±12.0°")
-    assert about[f"{name}, both legs, between"] == "read"
+    assert about[f"{name}, left knee, shape"] == "Good"
+    assert about[f"{name}, right ankle, shape"].startswith("Not reported: The calibration has an uncertainty of ±12.0°")
+    assert about[f"{name}, both legs, between"] == "Good"

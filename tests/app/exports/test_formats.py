@@ -64,6 +64,8 @@ def test_a_sheet_holds_the_cells_of_its_csv_file(
                 assert one[key] is None
             elif isinstance(one[key], int | float):
                 assert float(one[key]) == float(cell)
+            elif key.endswith("_status"):
+                assert one[key] == {"read": "Good", "care": "Caution"}[cell]
             else:
                 assert one[key] == cell
 

@@ -46,7 +46,8 @@ def test_a_workbook_states_not_reported_where_a_csv_file_is_empty(folder: Path) 
     assert len(strides) > 20
     for row in strides:
         for peak in ("knee_swing_peak_deg", "knee_at_initial_contact_deg", "ankle_stance_dorsiflexion_deg"):
-            assert row[peak] == "withheld", peak
+            assert row[peak] is None, peak
+        assert row["knee_height_status"] == row["ankle_height_status"] == "Not reported"
         for known in ("knee_range_deg", "ankle_range_deg", "stance_percent", "stride_length_m"):
             assert isinstance(row[known], float), known
     (path,) = folder.glob("walk*/strides.csv")
@@ -60,7 +61,8 @@ def test_cycles_have_a_shape_about_their_own_mean_and_no_height(folder: Path) ->
     walk = [row for row in sheet(folder, "Cycles") if row["recording"] == "walk 1"]
     assert len(walk) == 101
     for joint in LEG_JOINTS:
-        assert {row[f"{joint}_mean_deg"] for row in walk} == {"withheld"}
+        assert {row[f"{joint}_mean_deg"] for row in walk} == {None}
+        assert {row[f"{joint}_status"] for row in walk} == {"Curve shape only"}
         shape_deg = np.array([row[f"{joint}_shape_deg"] for row in walk], dtype=float)
         assert np.mean(shape_deg) == pytest.approx(0.0, abs=1e-3)
         assert np.ptp(shape_deg) > (45.0 if joint.is_knee else 15.0)
@@ -70,14 +72,15 @@ def test_cycles_have_a_shape_about_their_own_mean_and_no_height(folder: Path) ->
 def test_the_summary_has_no_figure_of_a_height(folder: Path) -> None:
     reported = {(row["side"], row["parameter"]): row for row in sheet(folder, "Summary")}
     for side in ("left", "right"):
-        assert reported[side, "knee_swing_peak_deg"]["mean"] == "withheld"
+        assert reported[side, "knee_swing_peak_deg"]["mean"] is None
         assert reported[side, "knee_range_deg"]["mean"] == pytest.approx(62.0, abs=6.0)
     statuses = {name: row["status"] for (side, name), row in reported.items() if side == "left"}
-    assert statuses["knee_swing_peak_deg"] == "withheld"
-    reasons = list(reported["left", "knee_range_deg"])[-1]
+    assert statuses["knee_swing_peak_deg"] == "Not reported"
+    reasons = "reasons"
     assert len(reported["left", "knee_swing_peak_deg"][reasons]) > 20
     assert reported["left", "knee_range_deg"][reasons] is None
-    assert statuses["knee_range_deg"] == statuses["stance_percent"] == "read"
+    assert statuses["knee_range_deg"] == statuses["stance_percent"] == "Good"
+    assert reported["left", "knee_range_deg"]["measure"] == "Knee range of motion"
 
 
 def test_fhir_gives_a_reason_for_a_missing_height(folder: Path) -> None:

@@ -14,6 +14,7 @@ TITLES = {
     "de/files.md": "### Programme, die diese Dateien geöffnet haben",
 }
 ROW = re.compile(r"\| `?(?P<file>[^|`]+)`? \| (?P<program>\S+) (?P<version>[\d.]+) \| (?P<what>[^|]+) \|")
+NPM, OFFICE = "npm:", "soffice"
 # file and program -> the test that opens it, and the package whose version it is
 PROGRAMS = {
     ("angles.mot", "OpenSim"): (
@@ -42,8 +43,30 @@ PROGRAMS = {
         "test_fhir_transaction.test_fhir_resources_takes_the_transaction",
         "test_formats.test_another_library_takes_the_bundle",
     ),
-    ("fhir_bundle.json", "fhir"): ("npm:fhir", "test_fhir_transaction.test_fhir_of_npm_finds_no_error"),
+    ("fhir_bundle.json", "fhir"): (f"{NPM}fhir", "test_fhir_transaction.test_fhir_of_npm_finds_no_error"),
+    ("results.xlsx", "openpyxl"): (
+        "openpyxl",
+        "test_formats.test_a_sheet_holds_the_cells_of_its_csv_file",
+        "test_contents.test_the_workbook_has_what_legs_and_conditions_differ_by_as_the_files_do",
+        "test_workbook.test_a_column_of_numbers_holds_nothing_else",
+    ),
+    ("results.xlsx", "python-calamine"): (
+        "python-calamine",
+        "test_workbook.test_calamine_reads_the_numbers_of_every_csv_file",
+    ),
+    ("results.xlsx", "LibreOffice"): (
+        OFFICE,
+        "test_workbook.test_libreoffice_opens_it_as_it_is_meant",
+        "test_workbook.test_libreoffice_prints_it_on_pages_that_name_the_patient",
+    ),
 }
+
+
+def version_of(package: str) -> str:
+    if package == OFFICE:
+        return ""  # what the system brings; each has another
+    name = package.removeprefix(NPM)
+    return version_in_python(name)[0] if name == package else version_in_node(name)
 
 
 def rows(page: str) -> list[re.Match[str]]:
@@ -64,10 +87,10 @@ def test_every_program_that_the_manual_names_has_its_tests(page: str) -> None:
             assert callable(getattr(importlib.import_module(f"tests.app.exports.{module}"), name))
 
 
+@pytest.mark.endurance  # with the locked versions, and those of programs beside them
 @pytest.mark.parametrize("page", TITLES)
 def test_the_versions_are_those_that_the_tests_run_with(page: str) -> None:
     for one in rows(page):
         package, *_ = PROGRAMS[one["file"], one["program"]]
-        name = package.removeprefix("npm:")
-        found = version_in_python(name)[0] if name == package else version_in_node(name)
+        found = version_of(package)
         assert found in ("", one["version"]), one["program"]  # without it its tests are skipped too, and state so

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import openpyxl
 import pypdf
 import pytest
 import typst
@@ -35,7 +36,25 @@ def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, 
     reader = pypdf.PdfReader(out)
     assert [float(side) for side in reader.pages[0].mediabox[2:]] == [612, 792]
     assert "Walks well with one crutch." in reader.pages[0].extract_text()
-    assert list(out.parent.iterdir()) == [out]
+    assert sorted(out.parent.iterdir()) == [out, out.parent / "results.xlsx"]
+    book = openpyxl.load_workbook(out.parent / "results.xlsx")
+    assert (book["About"].page_setup.paperSize, "Summary" in book.sheetnames) == (1, True)
+
+
+def test_the_workbook_has_the_name_of_the_report_and_replaces_only_a_workbook(
+    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """So that the reports of two people in one folder do not share their figures."""
+    report = ["report", str(session), "--out"]
+    assert main([*report, str(tmp_path / "anna.pdf")]) == 0
+    assert main([*report, str(tmp_path / "anna.pdf")]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["anna.pdf", "anna.xlsx"]
+    assert f"{tmp_path / 'anna.xlsx'}: all figures of the session." in capsys.readouterr().out
+    (tmp_path / "notes.xlsx").write_text("not a workbook")
+    assert main([*report, str(tmp_path / "notes.pdf")]) == 2
+    assert "notes.xlsx: this already exists and is not a workbook" in capsys.readouterr().err
+    assert (tmp_path / "notes.xlsx").read_text() == "not a workbook"
+    assert not (tmp_path / "notes.pdf").exists()
 
 
 @pytest.mark.endurance

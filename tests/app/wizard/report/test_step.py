@@ -204,7 +204,9 @@ def test_the_letter_is_exported_where_it_was_chosen(
     chosen(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
     name = report_name(visit).removesuffix(".pdf")
-    assert {file.name for file in (tmp_path / "results").iterdir()} == {f"{name}.pdf", f"{name}_letter.pdf"}
+    assert {file.name for file in (tmp_path / "results").iterdir()} == {
+        *(f"{name}.pdf", f"{name}_letter.pdf", "results.xlsx")
+    }
     text = pypdf.PdfReader(tmp_path / "results" / f"{name}_letter.pdf").pages[0].extract_text()
     assert "Your walking" in text
 

@@ -1,0 +1,127 @@
+"""Tests that tables for a spreadsheet of another country hold what those of the default form do."""
+
+import csv
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from app.exports.local_csv import TableForm, rewrite_tables
+from app.exports.result_folder import write_results
+from core.results import Analysis
+from core.session import Session
+from devices.files.session_folder import write_session
+from tests.app.cli.test_cli import analyse, files_in
+
+GERMAN = TableForm(";", ",")
+FIGURE = re.compile(r"-?\d+\.\d+")
+
+
+@pytest.fixture(scope="module")
+def typed(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+    """Conditions that look like figures, and hold what separates cells."""
+    session, analysis = visit
+    recordings = tuple(replace(one, condition="2.5; Müller, links") for one in session.recordings)
+    return replace(session, recordings=recordings), analysis
+
+
+@pytest.mark.parametrize("form", [GERMAN, TableForm("\t", "."), TableForm(";", "."), TableForm("\t", ",")])
+def test_every_cell_is_what_it_was_but_for_the_comma_of_figures(
+    typed: tuple[Session, Analysis], tmp_path: Path, form: TableForm
+) -> None:
+    for name in ("as_ever", "other"):
+        (tmp_path / name).mkdir()
+        write_results(*typed, tmp_path / name)
+    rewrite_tables(tmp_path / "other", form)
+    figures = 0
+    files = sorted((tmp_path / "as_ever").rglob("*.csv"))
+    assert len(files) > 10
+    for file in files:
+        other = tmp_path / "other" / file.relative_to(tmp_path / "as_ever")
+        assert other.read_bytes().startswith(b"\xef\xbb\xbf")  # or a spreadsheet takes an umlaut for two letters
+        with file.open(encoding="utf-8", newline="") as one, other.open(encoding="utf-8-sig", newline="") as two:
+            rows, again = list(csv.reader(one)), list(csv.reader(two, delimiter=form.separator))
+        assert again[0] == rows[0]
+        for row, same in zip(rows[1:], again[1:], strict=True):
+            for cell, found in zip(row, same, strict=True):
+                is_figure = FIGURE.fullmatch(cell) is not None
+                figures += is_figure
+                assert found == (cell.replace(".", form.decimal) if is_figure else cell), (file.name, cell)
+    assert figures > 5000
+    names = {path.name for path in (tmp_path / "other").rglob("*")}
+    assert not [name for name in names if name.startswith(".")]
+
+
+def test_what_was_typed_stays_as_it_was_typed(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    """A condition of 2.5, as of degrees, is no figure of ours."""
+    session, analysis = visit
+    recordings = tuple(replace(one, condition="2.5") for one in session.recordings)
+    write_results(replace(session, recordings=recordings), analysis, tmp_path)
+    rewrite_tables(tmp_path, GERMAN)
+    with (tmp_path / "sides.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file, delimiter=";"))
+    assert {row["name"] for row in rows} == {"2.5"}
+    assert all("." not in row["left_mean"] for row in rows)
+
+
+def test_the_metadata_states_what_separates_cells_and_fractions(
+    typed: tuple[Session, Analysis], tmp_path: Path
+) -> None:
+    write_results(*typed, tmp_path)
+    before = json.loads((tmp_path / "csv-metadata.json").read_text(encoding="utf-8"))
+    rewrite_tables(tmp_path, GERMAN)
+    after = json.loads((tmp_path / "csv-metadata.json").read_text(encoding="utf-8"))
+    for one, other in zip(before["tables"], after["tables"], strict=True):
+        assert "dialect" not in one
+        assert other["dialect"] == {"delimiter": ";"}
+        for column, same in zip(one["tableSchema"]["columns"], other["tableSchema"]["columns"], strict=True):
+            is_number = column["datatype"] == "number"
+            expected = {"base": "number", "format": {"decimalChar": ","}} if is_number else column["datatype"]
+            assert same == {**column, "datatype": expected}
+
+
+def test_the_default_form_touches_nothing(typed: tuple[Session, Analysis], tmp_path: Path) -> None:
+    write_results(*typed, tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    rewrite_tables(tmp_path, TableForm())
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
+def test_the_command_line_writes_the_form_asked_for(
+    visit: tuple[Session, Analysis], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session = tmp_path / "session"
+    write_session(visit[0], session)
+    bare = ("--no-report", "--no-rrd")
+    assert analyse(session, tmp_path / "ever", *bare) == analyse(session, tmp_path / "en", *bare, "--locale", "en") == 0
+    assert files_in(tmp_path / "ever") == files_in(tmp_path / "en")
+    for name, options, start in (
+        ("de", ("--locale", "de"), "time_s;left_knee_deg;"),
+        ("tab", ("--sep", "tab"), "time_s\tleft_knee_deg\t"),
+        ("both", ("--locale", "de", "--sep", "tab"), "time_s\tleft_knee_deg\t"),
+    ):
+        assert analyse(session, tmp_path / name, *bare, *options) == 0
+        (angles,) = (tmp_path / name).glob("walk*/angles.csv")
+        header, first, *_ = angles.read_text(encoding="utf-8-sig").splitlines()
+        assert header.startswith(start)
+        assert ("," in first) == (name != "tab")
+    assert analyse(session, tmp_path / "none", *bare, "--locale", "de", "--sep", "comma") == 2
+    assert "a comma cannot separate cells that have a decimal comma" in capsys.readouterr().err
+    assert not (tmp_path / "none").exists()
+    with pytest.raises(SystemExit):
+        main(["analyse", str(session), "--out", str(tmp_path / "none"), "--sep", "pipe"])
+    assert "pipe is none of comma, semicolon, tab" in capsys.readouterr().err
+
+
+@pytest.mark.endurance
+def test_compare_writes_its_table_in_the_form_asked_for(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    for name, condition in (("one", "a"), ("other", "a")):
+        recordings = tuple(replace(one, condition=condition) for one in visit[0].recordings)
+        write_session(replace(visit[0], recordings=recordings), tmp_path / name)
+    places = [str(tmp_path / name) for name in ("one", "other")]
+    assert main(["compare", *places, "--out", str(tmp_path / "out"), "--locale", "de"]) == 0
+    header = (tmp_path / "out" / "differences.csv").read_text(encoding="utf-8-sig").splitlines()[0]
+    assert header.startswith("part;name;walks;")
