@@ -18,8 +18,8 @@ METHODS = ("robust", "published")
 DEFAULT_TAU_S = 2.0
 KINDS = ("standing", "free_motion", "walking")
 IMPORTED = (
-    *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "shimmer", "mvnx", "apdm", "opensim", "bids-motion"),
-    *("xdf", "matlab", "parquet", "csv"),
+    *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "ximu", "shimmer", "mvnx", "apdm", "opensim"),
+    *("bids-motion", "xdf", "matlab", "parquet", "csv"),
 )
 EXPORTED = ("xlsx", "c3d", "mot", "fhir", "bids-motion")
 TYPED = ("device", "aids", "surface", "conditions", "changes")

@@ -21,7 +21,7 @@ from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import IN_THIS_PROCESS
 from devices.files.site_files import read_site
 from devices.files.system_calls import refuse_system_calls
-from devices.files.trial import BESIDE_INERTIAL
+from devices.files.trial import BESIDE_INERTIAL, registers_beside
 
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 IS_LINUX: bool = sys.platform == "linux"
@@ -89,7 +89,11 @@ def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
     if asked["task"] not in (TRIAL, GATHER):
         return [Path(asked["path"])], []
     named = list(map(Path, asked["files"]))
-    beside = [other for path in named for other in (path.with_name(BESIDE_INERTIAL), *tables_beside(path))]
+    beside = [
+        other
+        for path in named
+        for other in (path.with_name(BESIDE_INERTIAL), *registers_beside(path), *tables_beside(path))
+    ]
     return [*named, *beside], [folder for path in named for folder in folders_of_scans(path)]
 
 

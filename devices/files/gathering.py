@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from devices.files.formats import FORMATS, format_of
+from devices.files.formats import FORMATS, format_of, why_not_recognised
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_names import without_site
@@ -31,7 +31,7 @@ def gather(paths: Sequence[Path]) -> Gathered:
             )
             continue
         if name is None:
-            refused.append(FileRefusedError(path.name, "this file format is not supported", "Leave this file out"))
+            refused.append(why_not_recognised(path))
             continue
         found.setdefault((name, path.parent, _common(name, path)), []).append(str(path))
     if not found and not refused:

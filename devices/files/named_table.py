@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.findings import Finding
 from core.samples import FloatArray
-from devices.files.column_names import sensor_columns
+from devices.files.column_names import Quantity, SensorColumns, sensor_columns
 from devices.files.tables import Table
 
 
@@ -25,8 +25,11 @@ class NamedTable:
     units: Mapping[str, str] = field(default_factory=dict)  # of columns whose unit is not in their name
     rate_hz: float | None = None  # samples per second as the file gives it; None where it does not
     time_s: FloatArray | None = None  # (n,) or None: stamps in seconds that the file keeps beside its columns
+    time: str = "time"  # what these stamps are called
     left_out: Sequence[str] = ()  # columns that were not even read as numbers
     findings: Sequence[Finding] = ()  # what its reader noticed, without a place
+    stated: SensorColumns | None = None  # the columns of its one sensor, where somebody states them
+    of_file: Quantity | None = None  # what columns hold that name nothing but an axis
 
 
 def named_table_of(

@@ -13,12 +13,14 @@ T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
 BESIDE_INERTIAL = "Quaternion.csv"  # of the x-IMU3's converter, with the orientation
+OF_XIMU, REGISTERS = ("_CalInertialAndMag", "_CalInertialMagnetic"), "_Registers.csv"  # of the first x-IMU
 SIMULATED_MARK = "SIMULATED.txt"  # beside tables that belong to no session folder, which would say it
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
     "movella-dot": "the Movella DOT app",
     "xsens-mti": "an Xsens MTi, as the bytes it sent",
     "ximu3": "x-IMU3, as bytes or converted to CSV",
+    "ximu": "x-IMU, converted to CSV",
     "shimmer": "Shimmer, its card or Consensys",
     "mvnx": "Xsens MVN (MVNX)",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
@@ -37,6 +39,7 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "xsens-mti": "Recorded streams in four number formats, to the last digit of another program's reading.",
     "ximu3": "The maker's own decoder, to the last digit; for the folder of CSV its heads in public programs. No real "
     "file was at hand.",
+    "ximu": "Public files of the maker's own library: packet numbers, units and the register of the rate.",
     "shimmer": "One real recording of a card and Consensys's CSV of it, equal to the last digits; the clock of a "
     "synchronised one to 0.02 ms. No synchronised recording with motion was at hand.",
     "mvnx": "The MVN manual. No real file was at hand.",
@@ -107,6 +110,11 @@ class Gathered:
 
     trials: tuple[FilesOfTrial, ...]
     refused: tuple[FileRefusedError, ...]
+
+
+def registers_beside(path: Path) -> list[Path]:
+    """Where the registers of an x-IMU are beside its samples; none for a file of another name."""
+    return [path.with_name(path.stem.removesuffix(end) + REGISTERS) for end in OF_XIMU if path.stem.endswith(end)]
 
 
 def read_each(

@@ -129,6 +129,7 @@ def program_name(key: str) -> str:
         "movella-dot": tr("Movella DOT (files of its app)"),
         "xsens-mti": tr("Xsens MTi (raw bytes)"),
         "ximu3": tr("x-IMU3 (bytes or CSV)"),
+        "ximu": tr("x-IMU (CSV)"),
         "shimmer": tr("Shimmer (card or Consensys)"),
         "apdm": tr("APDM (Moveo, Mobility Lab or Motion Studio)"),
         "opensim": tr("OpenSim (orientations)"),

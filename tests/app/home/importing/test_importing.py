@@ -142,7 +142,10 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
     (tmp_path / "notes.txt").write_text("to be left out\n")
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
     stated = shown(page)
-    assert "notes.txt: this file format is not supported. Leave this file out." in stated
+    assert (
+        "notes.txt: the file format is not recognised, and the file is no table of numbers. Leave this file out"
+        in stated
+    )
     assert "mt.txt: the sample rate is missing." in stated
     page.rate.set_value(100.0)
     page.read_again.click()
@@ -155,7 +158,8 @@ def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Hom
     (tmp_path / "notes.txt").write_text("to be left out\n")
     home.importing.read([tmp_path / "notes.txt"])
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert home.banner.text == "This file format is not supported. Leave this file out. Where: notes.txt."
+    assert home.banner.text.startswith("The file format is not recognised, and the file is no table of numbers.")
+    assert home.banner.text.endswith("Where: notes.txt.")
     assert home.current is home.page
 
 
