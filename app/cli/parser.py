@@ -197,7 +197,13 @@ def _add_import(parser: argparse.ArgumentParser) -> None:
         "--map",
         required=True,
         metavar="SITE=FILE_OR_SENSOR_ID,...",
-        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot",
+        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot, "
+        "pelvis; or a mapping file of OpenSense (myIMUMappings.xml), whose names state it",
+    )
+    parser.add_argument(
+        "--one-receiver",
+        action="store_true",
+        help="the sensors shared one receiver, which gave all their times, though the files do not state it",
     )
     parser.add_argument("--kind", type=one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
     parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')

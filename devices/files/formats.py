@@ -16,6 +16,7 @@ from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
+from devices.files.sensor_mapping import read_mapping, with_names, without_mappings
 from devices.files.session_toml import FILE_NAME
 from devices.files.shimmer_tables import is_shimmer, shimmer_trial
 from devices.files.text_files import as_utf8
@@ -65,8 +66,16 @@ def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> Impor
     """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError."""
     for path in files:
         _refuse_missing(path)
-    every = list({path.resolve(): path for path in files}.values())
+    every, mappings = without_mappings(list({path.resolve(): path for path in files}.values()))
+    if not every:
+        raise FileRefusedError(
+            files[0].name,
+            "the file names sensors and holds no recording",
+            "Choose the recordings together with this file",
+        )
     found = FORMATS[name or recognised(every)].trial(every, rate_hz)
+    for path in mappings:
+        found = with_names(found, read_mapping(path))
     return replace(found, is_simulated=found.is_simulated or any(map(_is_of_simulated_session, every)))
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from devices.files.formats import FORMATS, format_of, why_not_recognised
 from devices.files.refusal import FileRefusedError
+from devices.files.sensor_mapping import read_mapping, without_mappings
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_names import without_site
 from devices.files.trial import SESSION, FilesOfTrial, Gathered
@@ -19,7 +20,8 @@ def gather(paths: Sequence[Path]) -> Gathered:
     """
     refused: list[FileRefusedError] = []
     found: dict[tuple[str, Path, str], list[str]] = {}
-    for path in _opened_up(paths):
+    opened, mappings = without_mappings(_opened_up(paths))
+    for path in opened:
         try:
             name = SESSION if (path / FILE_NAME).is_file() else format_of(path)
         except OSError as problem:
@@ -40,11 +42,32 @@ def gather(paths: Sequence[Path]) -> Gathered:
             "the folder contains neither session.toml nor a file that can be imported",
             "Choose the folder with the recordings",
         )
+    if not found and mappings and not refused:
+        raise FileRefusedError(
+            mappings[0].name,
+            "the file names sensors and holds no recording",
+            "Choose the recordings together with this file",
+        )
     trials = tuple(
-        FilesOfTrial(name, (common if len(files) > 1 else Path(files[0]).stem) or folder.name, tuple(files))
+        FilesOfTrial(
+            name,
+            (common if len(files) > 1 else Path(files[0]).stem) or folder.name,
+            (*files, *(str(path) for path in mappings if path.parent == folder and _is_named_by(path, name, files))),
+        )
         for (name, folder, common), files in found.items()
     )
     return Gathered(trials, tuple(refused))
+
+
+def _is_named_by(mapping: Path, name: str, files: Sequence[str]) -> bool:
+    """Whether a mapping may name sensors of these files: one of each is named by its id, which its file's name has."""
+    if name == SESSION or not FORMATS[name].is_one_sensor:
+        return name != SESSION
+    try:
+        ids = read_mapping(mapping)
+    except FileRefusedError:
+        return True  # whoever reads it is told why
+    return any(key in Path(file).stem.upper() for key in ids for file in files)
 
 
 def _common(name: str, path: Path) -> str:

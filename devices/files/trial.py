@@ -85,7 +85,8 @@ class UnreadFile:
 class ImportedTrial:
     """`format`: one of `formats.FORMATS`. `started`: as the file gives it, empty where it does not.
 
-    `is_simulated`: the files, or the session that they are a part of, say that nobody was measured.
+    `is_simulated`: the files, or the session that they are a part of, say that nobody was measured. `mapped`: the
+    names that a mapping file gives to sensors.
     """
 
     format: str
@@ -93,6 +94,7 @@ class ImportedTrial:
     unread: tuple[UnreadFile, ...] = ()
     started: str = ""
     is_simulated: bool = False
+    mapped: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +112,11 @@ class Gathered:
 
     trials: tuple[FilesOfTrial, ...]
     refused: tuple[FileRefusedError, ...]
+
+
+def plain_id(sensor: str) -> str:
+    """A sensor's id as it is compared: "_00B42268" is 00B42268."""
+    return sensor.strip().lstrip("_").upper()
 
 
 def registers_beside(path: Path) -> list[Path]:

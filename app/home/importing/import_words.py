@@ -31,6 +31,7 @@ SITE_WORDS = {
     Site.RIGHT_THIGH: later("Right thigh"),
     Site.RIGHT_SHANK: later("Right shank"),
     Site.RIGHT_FOOT: later("Right foot"),
+    Site.PELVIS: later("Pelvis"),
 }
 GRAVITY_WORDS = {  # by the finding that reports it
     "gravity_from_orientation": later("gravity added from orientation"),

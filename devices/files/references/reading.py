@@ -29,7 +29,8 @@ READERS: Mapping[str, ReferenceFormat] = {
     "csv": ReferenceFormat(is_csv, read_plain_csv),
     "visual3d": ReferenceFormat(is_visual3d, read_visual3d),
 }
-SOURCES = ("angles", "markers", "events", "strides")
+MARKERS = "markers"
+SOURCES = ("angles", MARKERS, "events", "strides")
 
 
 def read_reference(path: Path) -> ReferenceFile:
