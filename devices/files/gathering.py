@@ -36,17 +36,17 @@ def gather(paths: Sequence[Path]) -> Gathered:
             refused.append(why_not_recognised(path))
             continue
         found.setdefault((name, path.parent, _common(name, path)), []).append(str(path))
-    if not found and not refused:
-        raise FileRefusedError(
-            paths[0].name,
-            "the folder contains neither session.toml nor a file that can be imported",
-            "Choose the folder with the recordings",
-        )
     if not found and mappings and not refused:
         raise FileRefusedError(
             mappings[0].name,
             "the file names sensors and holds no recording",
             "Choose the recordings together with this file",
+        )
+    if not found and not refused:
+        raise FileRefusedError(
+            paths[0].name,
+            "the folder contains neither session.toml nor a file that can be imported",
+            "Choose the folder with the recordings",
         )
     trials = tuple(
         FilesOfTrial(
