@@ -8,7 +8,6 @@ last of all formats.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +28,17 @@ from devices.files.named_columns import NAME_THEM, trial_of_tables
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.site_names import without_site
-from devices.files.table_choices import CLOCK, NO_CHOICES, NONE, TableChoices, column_named
-from devices.files.table_layout import Layout, layout_of, refuse_twice
+from devices.files.table_choices import (
+    ALL_TABLES,
+    CLOCK,
+    NO_CHOICES,
+    NONE,
+    NOTHING_STATED,
+    StatedChoices,
+    TableChoices,
+    column_named,
+)
+from devices.files.table_layout import Layout, fingerprint_of, layout_of, refuse_twice
 from devices.files.tables import NO_VALUE, Table, is_value, read_rows
 from devices.files.text_times import is_time, seconds_of
 from devices.files.trial import ImportedTrial
@@ -85,29 +93,47 @@ def csv_recording(path: Path) -> str:
     return without_site(without_quantity(path.stem))
 
 
-def csv_trial(files: Sequence[Path], rate_hz: float | None = None, choices: TableChoices = NO_CHOICES) -> ImportedTrial:
-    """Read one trial's sensors; raises FileRefusedError if none can be read."""
-    return trial_of_tables(
-        FORMAT, partial(tables_of, choices=choices), files, rate_hz or choices.rate_hz, may_be_halves=True
-    )
+def csv_trial(
+    files: Sequence[Path], rate_hz: float | None = None, choices: StatedChoices = NOTHING_STATED
+) -> ImportedTrial:
+    """Read one trial's sensors; raises FileRefusedError if none can be read.
+
+    `choices`: what is stated of tables by their fingerprints, or of all by "".
+    """
+
+    def read(path: Path) -> list[NamedTable]:
+        return tables_of(path, choices_for(path, choices) or NO_CHOICES)
+
+    return trial_of_tables(FORMAT, read, files, rate_hz, may_be_halves=True)
 
 
-def tables_of(path: Path, choices: TableChoices = NO_CHOICES) -> list[NamedTable]:
-    """Read a file's tables, one for each sensor that a column names; raises FileRefusedError."""
+def choices_for(path: Path, choices: StatedChoices) -> TableChoices | None:
+    """What is stated of a file; None where nothing is; raises OSError where it cannot be opened."""
+    if not choices or not path.is_file():
+        return None
+    return choices.get(fingerprint_of(path)) or choices.get(ALL_TABLES)
+
+
+def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 0) -> list[NamedTable]:
+    """Read a file's tables, one for each sensor that a column names; raises FileRefusedError.
+
+    `most_bytes`: of the beginning; 0: all of it.
+    """
     where = path.name
-    layout = layout_of(path, where, choices)
+    layout = layout_of(path, where, choices, most_bytes)
     if not choices.acc and not choices.gyr:
         refuse_twice(layout, where)
-    stated = _stated_columns(layout, choices, where)
-    found = _sensors_in(layout, path) if stated is None else (stated,)
-    time = _time_column(layout, choices, found, where)
-    is_text = bool(time) and _is_text_time(layout, time, choices)
-    sensor = _sensor_column(layout, choices, where)
-    numeric = {name for one in found for name in one.names()} - {NONE}
+    found = columns_in(layout, choices)
+    time = time_column(layout, choices, found)
+    is_text = bool(time) and is_text_time(layout, time, choices)
+    sensor = sensor_column(layout, choices)
+    if choices.time:
+        found = tuple(replace(one, time=time, counter="") for one in found)
+    numeric = {name for one in found for name in one.names()}
     numeric = (numeric | {time} if time and not is_text else numeric - {time}) - {sensor}
     texts = {name for name in (time if is_text else "", sensor) if name}
     table = read_rows(layout.opened, where, layout.header, numeric, kept=texts)
-    units = {**layout.units, **_stated_units(stated, time, choices)}
+    units = {**layout.units, **_stated_units(found, time, choices)}
     named = NamedTable(
         columns={name: table.numbers[name] for name in layout.names if name in numeric},
         where=where,
@@ -115,13 +141,12 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES) -> list[NamedTable
         called=path.stem,
         place=table.place,
         units=units,
-        rate_hz=None if time else layout.rate_hz,
+        rate_hz=choices.rate_hz or (None if time else layout.rate_hz),
         time_s=seconds_of(table.texts[time].tolist(), time, where, table.place) if is_text else None,
         time=time or "time",
         left_out=[name for name in layout.names if name not in numeric and name != sensor],
         findings=table.findings,
-        stated=stated,
-        of_file=quantity_of_file(path.stem),
+        stated=found,
     )
     return _by_sensor(named, table, sensor) if sensor else [named]
 
@@ -130,6 +155,12 @@ def _sensors_in(layout: Layout, path: Path) -> tuple[SensorColumns, ...]:
     """The sensors by the names of the columns, else their halves."""
     whole = sensor_columns(layout.names, layout.units)
     return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
+
+
+def columns_in(layout: Layout, choices: TableChoices) -> tuple[SensorColumns, ...]:
+    """The sensors of a table, as somebody states them or by the names of the columns; raises FileRefusedError."""
+    stated = _stated_columns(layout, choices, layout.path.name)
+    return _sensors_in(layout, layout.path) if stated is None else (stated,)
 
 
 def _stated_columns(layout: Layout, choices: TableChoices, where: str) -> SensorColumns | None:
@@ -172,33 +203,35 @@ def _column(layout: Layout, stated: str, where: str) -> str:
     return name
 
 
-def _time_column(layout: Layout, choices: TableChoices, found: Sequence[SensorColumns], where: str) -> str:
+def time_column(layout: Layout, choices: TableChoices, found: Sequence[SensorColumns]) -> str:
     """The column of times of all sensors; empty where there is none, or each has its own."""
     if choices.time:
-        return "" if choices.time == NONE else _column(layout, choices.time, where)
+        return "" if choices.time == NONE else _column(layout, choices.time, layout.path.name)
     times = {one.time for one in found}
     return times.pop() if len(times) == 1 else ""
 
 
-def _is_text_time(layout: Layout, time: str, choices: TableChoices) -> bool:
+def is_text_time(layout: Layout, time: str, choices: TableChoices) -> bool:
+    """Whether a column of times holds texts such as 23:59:59.990."""
     if choices.time_unit:
         return choices.time_unit == CLOCK
     cells = [cell for cell in layout.cells(time) if cell and cell.lower() not in NO_VALUE]
     return bool(cells) and any(is_time(cell) for cell in cells) and not all(map(is_value, cells))
 
 
-def _sensor_column(layout: Layout, choices: TableChoices, where: str) -> str:
+def sensor_column(layout: Layout, choices: TableChoices) -> str:
     """The column that names the sensor of each row; empty where there is none."""
     if choices.sensor:
-        return "" if choices.sensor == NONE else _column(layout, choices.sensor, where)
+        return "" if choices.sensor == NONE else _column(layout, choices.sensor, layout.path.name)
     return next((name for name in layout.names if plain_name(name) in SENSOR_NAMES), "")
 
 
-def _stated_units(stated: SensorColumns | None, time: str, choices: TableChoices) -> Mapping[str, str]:
+def _stated_units(found: Sequence[SensorColumns], time: str, choices: TableChoices) -> Mapping[str, str]:
     """Units that somebody states, by column."""
     units = {time: choices.time_unit} if time and choices.time_unit not in ("", CLOCK) else {}
-    for names, unit in ((stated.acc, choices.acc_unit), (stated.gyr, choices.gyr_unit)) if stated else ():
-        units |= dict.fromkeys(names, unit) if unit else {}
+    for one in found:
+        for names, unit in ((one.acc, choices.acc_unit), (one.gyr, choices.gyr_unit)):
+            units |= dict.fromkeys(names, unit) if unit else {}
     return units
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
-from devices.files.csv_tables import csv_recording, csv_trial, is_csv, why_no_csv
+from devices.files.csv_tables import choices_for, csv_recording, csv_trial, is_csv, why_no_csv
 from devices.files.matlab_tables import matlab_trial
 from devices.files.matlab_variables import is_matlab
 from devices.files.movella_dot import dot_recording, is_movella_dot, movella_dot_trial
@@ -19,6 +19,7 @@ from devices.files.refusal import FileRefusedError
 from devices.files.sensor_mapping import read_mapping, with_names, without_mappings
 from devices.files.session_toml import FILE_NAME
 from devices.files.shimmer_tables import is_shimmer, shimmer_trial
+from devices.files.table_choices import NOTHING_STATED, StatedChoices
 from devices.files.text_files import as_utf8
 from devices.files.trial import SIMULATED_MARK, ImportedTrial
 from devices.files.xdf import is_xdf, xdf_trial
@@ -62,8 +63,13 @@ FORMATS: Mapping[str, FileFormat] = {
 }
 
 
-def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
-    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError."""
+def read_trial(
+    name: str, files: Sequence[Path], rate_hz: float | None, choices: StatedChoices = NOTHING_STATED
+) -> ImportedTrial:
+    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError.
+
+    `choices`: what somebody states of tables, whose format it takes the place of.
+    """
     for path in files:
         _refuse_missing(path)
     every, mappings = without_mappings(list({path.resolve(): path for path in files}.values()))
@@ -73,7 +79,10 @@ def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> Impor
             "the file names sensors and holds no recording",
             "Choose the recordings together with this file",
         )
-    found = FORMATS[name or recognised(every)].trial(every, rate_hz)
+    if any(choices_for(path, choices) is not None for path in every):
+        found = csv_trial(every, rate_hz, choices)
+    else:
+        found = FORMATS[name or recognised(every)].trial(every, rate_hz)
     for path in mappings:
         found = with_names(found, read_mapping(path))
     return replace(found, is_simulated=found.is_simulated or any(map(_is_of_simulated_session, every)))

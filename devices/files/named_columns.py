@@ -4,9 +4,8 @@ What a name does not say is found by size where size leaves one answer only, and
 two, the file is refused with the name that would settle it. What a name does say is held to the size, too.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,6 @@ from devices.files.column_names import (
     XYZ,
     Quantity,
     SensorColumns,
-    half_columns,
     listed,
     meaning_of,
     sensor_columns,
@@ -33,7 +31,7 @@ from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size
 from devices.files.named_table import NamedTable
 from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.trial import ImportedSensor, ImportedTrial, read_each
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile, read_each
 
 GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels, by which a unit is found
 LEAST_DOWN = 0.3  # of the size of the mean, where a unit is found by size: acceleration without gravity has none
@@ -45,9 +43,11 @@ NAME_THEM = (
 )
 
 
-def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedSensor]:
-    """Give a table's sensors, SI, seconds by its stamps; FileRefusedError for no sensor, bad units or times."""
-    found = _columns_of(table, sensor_columns)
+def sensors_of_table(table: NamedTable, rate_hz: float | None) -> tuple[list[ImportedSensor], list[UnreadFile]]:
+    """Give a table's sensors, SI, seconds by its stamps, and of several those that cannot be read.
+    FileRefusedError for no sensor, bad units or times of all.
+    """
+    found = [one for one in _columns_of(table) if one.acc and one.gyr]
     if not found:
         raise FileRefusedError(
             table.where,
@@ -55,12 +55,23 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
             NAME_THEM,
             names=listed([*table.columns, *table.left_out]) or "-",
         )
-    return [_sensor(table, one, rate_hz, _others(table, found)) for one in found]
+    sensors: list[ImportedSensor] = []
+    unread: list[UnreadFile] = []
+    for one in found:
+        try:
+            sensors.append(_sensor(table, one, rate_hz, _others(table, found)))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(table.file, (one.sensor or table.called,), refusal))
+    if not sensors:
+        raise unread[0].refusal
+    return sensors, unread
 
 
 def halves_of_table(table: NamedTable, rate_hz: float | None) -> list[Half]:
     """Give the acceleration or the angular rates of a table's sensors, none where it has both; raises as above."""
-    found = _columns_of(table, partial(half_columns, of_file=table.of_file))
+    found = _columns_of(table)
+    if any(one.acc and one.gyr for one in found):
+        return []
     halves = []
     for one in found:
         quantity = Quantity.ACC if one.acc else Quantity.GYR
@@ -83,11 +94,15 @@ def trial_of_tables(
     `may_be_halves`: accelerometer and gyroscope of one sensor may be in two files.
     """
 
+    of_tables: list[UnreadFile] = []
+
     def read_one(path: Path) -> list[tuple[str, list[ImportedSensor], list[Half]]]:
         found = []
         for table in read(path):
             halves = halves_of_table(table, rate_hz) if may_be_halves else []
-            found.append((table.called, [] if halves else sensors_of_table(table, rate_hz), halves))
+            whole, refused = ([], []) if halves else sensors_of_table(table, rate_hz)
+            of_tables.extend(refused)
+            found.append((table.called, whole, halves))
         return found
 
     tables, unread = read_each(files, read_one)
@@ -100,18 +115,15 @@ def trial_of_tables(
     together, alone = joined([half for of_file in tables for _, _, halves in of_file for half in halves])
     if alone and not sensors and not together:
         raise (unread or alone)[0].refusal
-    return ImportedTrial(format_name, (*sensors, *together), (*unread, *alone))
+    return ImportedTrial(format_name, (*sensors, *together), (*unread, *of_tables, *alone))
 
 
-def _columns_of(
-    table: NamedTable, find: Callable[[Sequence[str], Mapping[str, str]], tuple[SensorColumns, ...]]
-) -> tuple[SensorColumns, ...]:
+def _columns_of(table: NamedTable) -> tuple[SensorColumns, ...]:
     """A table's sensors, as somebody states them or as their names give them."""
     if table.stated is not None:
-        is_whole = bool(table.stated.acc and table.stated.gyr)
-        return (table.stated,) if is_whole == (find is sensor_columns) else ()
+        return table.stated
     try:
-        return find(list(table.columns), table.units)
+        return sensor_columns(list(table.columns), table.units)
     except FileRefusedError as refusal:
         raise FileRefusedError.stated_elsewhere(table.where, refusal.what, refusal.remedy, refusal.values) from None
 
@@ -243,7 +255,7 @@ def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) 
         meaning = meaning_of(name, stated)
         units.add(unit_of(quantity, stated) or unit_of(quantity, meaning.unit if meaning else ""))
         bracketed = without_brackets(name)[1]
-        for text in (stated, bracketed) if table.stated is None else ():
+        for text in (stated or bracketed,):
             if text.strip() and not unit_of(quantity, text):
                 raise FileRefusedError(
                     table.where,

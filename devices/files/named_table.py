@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.findings import Finding
 from core.samples import FloatArray
-from devices.files.column_names import Quantity, SensorColumns, sensor_columns
+from devices.files.column_names import SensorColumns, sensor_columns
 from devices.files.tables import Table
 
 
@@ -28,8 +28,7 @@ class NamedTable:
     time: str = "time"  # what these stamps are called
     left_out: Sequence[str] = ()  # columns that were not even read as numbers
     findings: Sequence[Finding] = ()  # what its reader noticed, without a place
-    stated: SensorColumns | None = None  # the columns of its one sensor, where somebody states them
-    of_file: Quantity | None = None  # what columns hold that name nothing but an axis
+    stated: tuple[SensorColumns, ...] | None = None  # its sensors, or halves of them; None: by the columns' names
 
 
 def named_table_of(

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO
 
@@ -24,7 +25,7 @@ from devices.files.text_files import CONTROLS, encoding_of, open_text
 HEAD_BYTES = 262_144
 MOST_LINES = 400  # by which a layout is found
 LEAST_NUMBERS = 3  # of a row: three axes
-SHOWN_ROWS = 12
+FIRST_ROWS = 20
 COMMENT = "#"
 BLANKS = re.compile(rb"[ \t]+")
 RATE = re.compile(
@@ -51,6 +52,13 @@ class Layout:
     rows: tuple[tuple[str, ...], ...]
     twice: str = ""
     rate_hz: float | None = None
+    most_bytes: int = 0
+
+    @property
+    def fingerprint(self) -> str:
+        """What tables of one program have in common: their names and what divides them, without any of the words."""
+        names = [*self.names] if self.header_line else [str(len(self.names))]
+        return sha256("\x1f".join([self.header.delimiter, *names]).encode()).hexdigest()[:16]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -59,7 +67,7 @@ class Layout:
     @property
     def opened(self) -> Open:
         """What opens the table's text for `tables.read_rows`."""
-        return partial(_opened, self.path, self.encoding, self.header.delimiter == " ")
+        return partial(_opened, self.path, self.encoding, self.header.delimiter == " ", self.most_bytes)
 
     def cells(self, name: str) -> list[str]:
         """The first cells of a column."""
@@ -76,8 +84,11 @@ class _Line:
     text: str
 
 
-def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES) -> Layout:
-    """Find how a text is laid out; raises FileRefusedError where it holds no table."""
+def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES, most_bytes: int = 0) -> Layout:
+    """Find how a text is laid out; raises FileRefusedError where it holds no table.
+
+    `most_bytes`: of the beginning that its rows are read from; 0: all of it.
+    """
     encoding = choices.encoding or _encoding_of(path)
     lines = _lines(path, where, encoding, is_squeezed=False)
     stated = SEPARATOR_LINE.fullmatch(lines[0].text.encode()) if lines else None
@@ -89,7 +100,7 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES) -> Lay
     first = _first_row(lines, cells, choices.header_line)
     if first is None:
         raise FileRefusedError(where, NO_TABLE, EXPORT_TABLE)
-    rows = [row for line, row in zip(lines[first:], cells[first:], strict=True) if _is_content(line)][:SHOWN_ROWS]
+    rows = [row for line, row in zip(lines[first:], cells[first:], strict=True) if _is_content(line)]
     width = Counter(map(len, rows)).most_common(1)[0][0]
     at, units_at = _header_place(lines, cells, first, width, choices.header_line)
     names = list(cells[at]) if at is not None else []
@@ -105,7 +116,7 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES) -> Lay
         delimiter=delimiter,
         line=lines[first - 1].number if first else 0,
         start=lines[first - 1].end if first else 0,
-        decimal=choices.decimal or decimal_of(rows),
+        decimal=choices.decimal or decimal_of(rows[:FIRST_ROWS]),
         before=before,
     )
     return Layout(
@@ -117,6 +128,7 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES) -> Lay
         rows=tuple(map(tuple, rows)),
         twice=next((name for name in names if names.count(name) > 1), ""),
         rate_hz=_stated_rate(before),
+        most_bytes=most_bytes,
     )
 
 
@@ -125,12 +137,33 @@ def _encoding_of(path: Path) -> str:
         return encoding_of(file.read(HEAD_BYTES))
 
 
-def _opened(path: Path, encoding: str, is_squeezed: bool) -> BinaryIO:
+def _opened(path: Path, encoding: str, is_squeezed: bool, most_bytes: int = 0) -> BinaryIO:
     file = open_text(path, encoding)
-    if not is_squeezed:
+    if not is_squeezed and not most_bytes:
         return file
     with file:
-        return io.BytesIO(b"\n".join(BLANKS.sub(b" ", line).strip(b" ") for line in file.read().split(b"\n")))
+        content = file.read(most_bytes) if most_bytes else file.read()
+        if file.read(1):
+            content = content[: content.rfind(b"\n") + 1]
+    if not is_squeezed:
+        return io.BytesIO(content)
+    return io.BytesIO(b"\n".join(BLANKS.sub(b" ", line).strip(b" ") for line in content.split(b"\n")))
+
+
+def lines_of_head(path: Path, encoding: str = "") -> list[str]:
+    """The first lines of a text; none of what is no text."""
+    try:
+        return [line.text for line in _lines(path, path.name, encoding or _encoding_of(path), is_squeezed=False)]
+    except FileRefusedError:
+        return []
+
+
+def fingerprint_of(path: Path) -> str:
+    """The fingerprint of a file's table as it is found without being stated; empty where there is none."""
+    try:
+        return layout_of(path, path.name).fingerprint
+    except FileRefusedError:
+        return ""
 
 
 def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_Line]:

@@ -324,7 +324,7 @@ def _refuse_cells(cells: list[str], here: str, header: Header, numeric: Collecti
             whole=len(header.names),
         )
     for name, cell in zip(header.names, cells, strict=True):
-        number = cell if header.decimal == "." else cell.replace(header.decimal, ".")
+        number = cell if header.decimal == "." else cell.replace(".", "?").replace(header.decimal, ".")
         if name in numeric and not NUMBER.fullmatch(number) and cell.strip().lower() not in NO_VALUE:
             raise FileRefusedError(
                 here, "{cell} in column {name} is not a number", CORRECT_IT, cell=quoted(cell), name=name

@@ -108,10 +108,11 @@ class FilesOfTrial:
 
 @dataclass(frozen=True, slots=True)
 class Gathered:
-    """`refused`: what is none of the formats, and why."""
+    """`refused`: what is none of the formats, and why. `tables`: those of them that are tables all the same."""
 
     trials: tuple[FilesOfTrial, ...]
     refused: tuple[FileRefusedError, ...]
+    tables: tuple[str, ...] = ()
 
 
 def plain_id(sensor: str) -> str:

@@ -235,7 +235,7 @@ def case(
         "read_foreign_session": lambda folder, _waiting: read_session(folder),
         "read_foreign_reference": lambda path, _waiting: read_reference(path),
         "write_over_session": write_session,
-        "read_foreign_trial": lambda name, files, rate_hz, _waiting: read_trial(name, files, rate_hz),
+        "read_foreign_trial": lambda name, files, rate_hz, _waiting, choices: read_trial(name, files, rate_hz, choices),
     }
     patched = set()
     for module in (agree, import_files, places):
