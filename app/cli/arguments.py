@@ -5,6 +5,7 @@ repeated, and a test holds them to those.
 """
 
 import argparse
+import csv
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,11 +19,15 @@ METHODS = ("robust", "published")
 DEFAULT_TAU_S = 2.0
 KINDS = ("standing", "free_motion", "walking")
 IMPORTED = (
-    *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "shimmer", "mvnx", "apdm", "opensim", "bids-motion"),
-    *("xdf", "matlab", "parquet", "csv"),
+    *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "ximu", "shimmer", "mvnx", "apdm", "opensim"),
+    *("bids-motion", "xdf", "matlab", "parquet", "csv"),
 )
+ENCODINGS = ("utf-8", "utf-16", "cp1252")
+SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "space": " "}
+DECIMALS = {"point": ".", "comma": ","}
+FORCE_UNITS, RATE_UNITS = ("m/s2", "g", "mg"), ("rad/s", "deg/s", "mdeg/s")
+TIME_UNITS = ("s", "ms", "us", "ns", "d", "count", "clock")
 EXPORTED = ("xlsx", "c3d", "mot", "sto", "fhir", "bids-motion")
-SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LOCALES = {"en": (",", "."), "de": (";", ",")}  # what separates cells, and what is before a fraction
 MODELS = ("rajagopal2016", "gait2392")
 TYPED = ("device", "aids", "surface", "conditions", "changes")
@@ -84,6 +89,21 @@ def positive(text: str) -> float:
     if not 0 < number < math.inf:
         raise argparse.ArgumentTypeError(f"{text} is not a positive number")
     return number
+
+
+def line_number(text: str) -> int:
+    """An argument that is the number of a line, or 0."""
+    if not (text.isascii() and text.isdigit() and int(text) <= 1_000_000):
+        raise argparse.ArgumentTypeError(f"{text} is no number of a line")
+    return int(text)
+
+
+def three_columns(text: str) -> tuple[str, ...]:
+    """An argument that names the columns of three axes, or none of them."""
+    columns = tuple(one.strip() for one in next(csv.reader([text]), []))
+    if columns != ("none",) and (len(columns) != 3 or not all(columns)):
+        raise argparse.ArgumentTypeError(f"{text} does not name three columns as x,y,z, nor none")
+    return columns
 
 
 def worker_count(text: str) -> int:

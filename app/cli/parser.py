@@ -9,11 +9,14 @@ from typing import NoReturn
 from app.cli.arguments import (
     ADDRESS,
     AGREEMENT,
+    DECIMALS,
     DEFAULT_TAU_S,
     DIFFERENCES,
     EMULATED,
+    ENCODINGS,
     EXAMPLE,
     EXPORTED,
+    FORCE_UNITS,
     IMPORTED,
     KINDS,
     LOCALES,
@@ -24,15 +27,19 @@ from app.cli.arguments import (
     ONE_SESSION,
     PAPERS,
     PASSPHRASE_FILE,
+    RATE_UNITS,
     SEPARATORS,
+    TIME_UNITS,
     TYPED,
     WHO,
     LibrarySession,
     limit_of,
+    line_number,
     one_of,
     positive,
     separator,
     session_place,
+    three_columns,
     worker_count,
 )
 from app.storage.layout import DATABASE_VARIABLE, default_folder, own_folder
@@ -214,7 +221,11 @@ def _add_export(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_import(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Make one recording of files of another program and add it to a session folder."
+    parser.description = (
+        "Make one recording of files of another program and add it to a session folder. What a table does not show by "
+        "its names and values can be stated: the options from --encoding on, for all files alike. Columns are given by "
+        "name or by number from 1. --preview shows how tables are read."
+    )
     parser.add_argument("files", metavar="FILES", type=Path, nargs="+", help="the files of one recording")
     parser.add_argument(
         "--as",
@@ -225,14 +236,46 @@ def _add_import(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--map",
-        required=True,
         metavar="SITE=FILE_OR_SENSOR_ID,...",
-        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot",
+        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot, "
+        "pelvis; or a mapping file of OpenSense (myIMUMappings.xml), whose names state it",
+    )
+    parser.add_argument(
+        "--one-receiver",
+        action="store_true",
+        help="the sensors shared one receiver, which gave all their times, though the files do not state it",
     )
     parser.add_argument("--kind", type=one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
     parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')
     parser.add_argument("--rate", type=positive, metavar="HZ", help="samples per second, if not in the files")
-    parser.add_argument("--out", metavar="SESSION", type=Path, required=True, help="the session folder, new or not")
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--out", metavar="SESSION", type=Path, help="the session folder, new or not; --map is needed")
+    where.add_argument("--preview", action="store_true", help="write nothing; show how each table is read, and why not")
+    _add_table(parser)
+
+
+def _add_table(parser: argparse.ArgumentParser) -> None:
+    """What may be stated of a table."""
+    parser.add_argument("--encoding", type=one_of(ENCODINGS), metavar="NAME", help=" | ".join(ENCODINGS))
+    parser.add_argument(
+        "--header-line", type=line_number, metavar="N", help="the line with the names of the columns, from 1; 0: none"
+    )
+    parser.add_argument("--separator", type=one_of(tuple(SEPARATORS)), metavar="NAME", help=" | ".join(SEPARATORS))
+    parser.add_argument("--decimal", type=one_of(tuple(DECIMALS)), metavar="SIGN", help=" | ".join(DECIMALS))
+    parser.add_argument("--acc", type=three_columns, metavar="X,Y,Z", help="the columns of acceleration, or none")
+    parser.add_argument("--acc-unit", type=one_of(FORCE_UNITS), metavar="UNIT", help=" | ".join(FORCE_UNITS))
+    parser.add_argument("--gyr", type=three_columns, metavar="X,Y,Z", help="the columns of angular rate, or none")
+    parser.add_argument("--gyr-unit", type=one_of(RATE_UNITS), metavar="UNIT", help=" | ".join(RATE_UNITS))
+    parser.add_argument("--time", metavar="COLUMN", help="the column of times; none: samples are even, see --rate")
+    parser.add_argument(
+        "--time-unit",
+        type=one_of(TIME_UNITS),
+        metavar="UNIT",
+        help=f"{' | '.join(TIME_UNITS)}; count: samples are counted, clock: texts such as 23:59:59.990 or ISO 8601",
+    )
+    parser.add_argument(
+        "--sensor-column", metavar="COLUMN", help="the column that names the sensor of each row, or none"
+    )
 
 
 def _add_batch(parser: argparse.ArgumentParser) -> None:

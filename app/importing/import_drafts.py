@@ -67,6 +67,12 @@ class SessionDraft:
     sensors: tuple[DraftSensor, ...]
 
     @property
+    def is_clock_open(self) -> bool:
+        """Whether there are several sensors, and nothing states which clock gave their times."""
+        sensors = [sensor for one in self.recordings for sensor in one.trial.sensors]
+        return len(self.sensors) > 1 and not any(sensor.info.clock for sensor in sensors)
+
+    @property
     def started(self) -> str:
         """When the first of them began, as the files give it; empty where they do not."""
         return next(filter(None, (_when(one.trial) for one in self.recordings)), "")
@@ -90,10 +96,17 @@ def key_of(sensor: ImportedSensor) -> str:
 
 
 def session_of(
-    draft: SessionDraft, kinds: Sequence[RecordingKind | None], sites: Mapping[str, Site | None], day: str = ""
+    draft: SessionDraft,
+    kinds: Sequence[RecordingKind | None],
+    sites: Mapping[str, Site | None],
+    day: str = "",
+    *,
+    is_one_receiver: bool = False,
 ) -> Session:
     """Give the confirmed session; `kinds` None: left out, `sites` None: not on a leg; `day`: ISO 8601.
-    Raises FileRefusedError for two sensors at one site or sensors of a recording without common time.
+
+    `is_one_receiver`: the sensors share its clock. Raises FileRefusedError for two sensors at one site or sensors of a
+    recording without common time.
     """
     session = Session((), started="" if draft.started else day)
     for one, kind in zip(draft.recordings, kinds, strict=True):
@@ -101,7 +114,7 @@ def session_of(
         if kind is None or not placed:
             continue
         name = free_name(session, kind)
-        imported = place_sensors(one.trial, placed, name)
+        imported = place_sensors(one.trial, placed, name, is_one_receiver=is_one_receiver)
         started = _when(one.trial)
         recording = Recording(name, kind, folder_for(name), imported.imu, started=started, note=one.title)
         session = add_recording(session, recording, imported.sensors, imported.findings, imported.is_simulated)
@@ -110,7 +123,7 @@ def session_of(
 
 
 def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
-    """Give the legs found in the liveliest recording from the 2 to 6 `worn` sensor keys; None where none."""
+    """Give the legs found in the liveliest recording from the 2 to 7 `worn` sensor keys; None where none."""
     if len(worn) not in USUAL_SITES:
         return None
     sites = dict(zip(worn, Site, strict=False))  # any: they are only labels here

@@ -12,6 +12,7 @@ from core.session import Session
 from devices.files.limited_reader import Columns, LimitedReader, LimitedReading, Waiting
 from devices.files.references.trial import ReferenceFile
 from devices.files.session_folder import read_session, write_session
+from devices.files.table_choices import NOTHING_STATED, StatedChoices, TableChoices, TablePreview
 from devices.files.trial import Gathered, ImportedTrial
 
 
@@ -30,10 +31,19 @@ def write_over_session(session: Session, folder: Path) -> None:
 
 
 def read_foreign_trial(
-    format_name: str, files: Sequence[Path], rate_hz: float | None, waiting: Waiting
+    format_name: str,
+    files: Sequence[Path],
+    rate_hz: float | None,
+    waiting: Waiting,
+    choices: StatedChoices = NOTHING_STATED,
 ) -> ImportedTrial:
     """Read a trial by its reader in `devices.files`; `format_name` empty: by content; raises FileRefusedError."""
-    return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz)
+    return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz, choices)
+
+
+def preview_foreign_table(path: Path, stated: TableChoices, waiting: Waiting) -> TablePreview:
+    """Preview a table as `devices.files.table_preview.preview_of`, within limits; raises FileRefusedError."""
+    return LimitedReading(the_reader(), waiting).preview(path, stated)
 
 
 def read_foreign_reference(path: Path, waiting: Waiting) -> ReferenceFile:
@@ -41,9 +51,11 @@ def read_foreign_reference(path: Path, waiting: Waiting) -> ReferenceFile:
     return LimitedReading(the_reader(), waiting).read_reference(path)
 
 
-def gather_foreign(paths: Sequence[Path], waiting: Waiting) -> Gathered:
+def gather_foreign(
+    paths: Sequence[Path], waiting: Waiting, choices: StatedChoices = NOTHING_STATED, *, are_one: bool = False
+) -> Gathered:
     """Group files and folders as `devices.files.gathering.gather`, within limits; raises FileRefusedError."""
-    return LimitedReading(the_reader(), waiting).gather(paths)
+    return LimitedReading(the_reader(), waiting).gather(paths, choices, are_one=are_one)
 
 
 def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:

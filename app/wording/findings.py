@@ -18,6 +18,15 @@ SENTENCES = {
         "The file “{name}” was not imported, because its sensor position is unknown. Add it to the map to import it."
     ),
     "doubled_stamps": "Some rows ({count}) repeat the previous time. The first of each was used.",
+    "rows_cut_short": "The last rows ({count}) are incomplete. They were left out.",
+    "stamps_spread": (
+        "About {count:g} samples share each time stamp. They were spread evenly; stamps were up to {away_ms:.0f} ms "
+        "off, and losses shorter than {loss_ms:.0f} ms go unnoticed."
+    ),
+    "joined_files": (
+        "Acceleration ({acc}, {acc_hz:g} Hz) and angular rate ({gyr}, {gyr_hz:g} Hz) come from two files. They were "
+        "joined by time."
+    ),
     "stamps_mended": (
         "Some time stamps ({count}) are wrong, the first at sample {first}, off by {off_s:.6g} s. Times were "
         "interpolated between the samples around them; samples left out: {left_out}."
@@ -42,9 +51,16 @@ SENTENCES = {
     ),
     "columns_left_out": "Unknown columns were not read: {names}.",
     "unit_by_size": "The file gives no unit for {names}. From the size of the values, {unit} was assumed.",
+    "unit_by_gravity": (
+        "The file gives no unit for {names}. Gravity turns with the sensor as it does in {unit}, which was assumed."
+    ),
     "time_from_rate": (
         "The file contains no times; samples are assumed to be evenly spaced at {rate_hz:g} Hz. Lost samples go "
         "unnoticed; export times or a counter as well."
+    ),
+    "packet_numbers": (
+        "The packet number also counts other packets, so it is no clock. Samples are assumed to be evenly spaced at "
+        "{rate_hz:g} Hz; losses of fewer than {least_loss} samples go unnoticed."
     ),
     "times_straightened": (
         "Packet times, up to {away_ms:.0f} ms early or late, were fitted to a straight line. Losses shorter than "

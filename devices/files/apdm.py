@@ -8,6 +8,7 @@ specific force of a sensor at rest to earth z, and its slope is the rate.
 """
 
 import csv
+import io
 import re
 from collections.abc import Sequence
 from itertools import islice
@@ -21,10 +22,14 @@ from devices.files.clock_repair import FileClock, usual_rate, whole_clock
 from devices.files.hdf5 import is_hdf5
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.tables import CutEnd, number_in
+from devices.files.text_files import open_text
 from devices.files.trial import ImportedSensor, ImportedTrial
 
 MONITORS, TEST_NAME, TIME = "Format=", "Test Name:", "Time"
 HEAD_LINES = 5  # at most, of either dialect
+HEAD_LETTERS = 2000
+DELIMITERS = ",;\t"
 EXPORT_AGAIN = "Export the file again as CSV, from Moveo, Mobility Lab or Motion Studio"
 WITH_IT = "Export the file again, including the missing data"
 PER_MONITOR = {"Accelerometer": 3, "Gyroscope": 3, "Magnetometer": 3, "Orientation": 4}
@@ -41,7 +46,7 @@ def is_apdm(path: Path, head: bytes) -> bool:
     lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
     if not lines:
         return False
-    return bool(re.match(r"Format=\d+,", lines[0])) or (
+    return bool(re.match(r"Format=\d+[,;\t]", lines[0])) or (
         lines[0].startswith(TEST_NAME) and any("/Acceleration/" in line for line in lines[:HEAD_LINES])
     )
 
@@ -49,8 +54,10 @@ def is_apdm(path: Path, head: bytes) -> bool:
 def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
     """Read one CSV; raises FileRefusedError where it cannot be read or its times step back."""
     where = path.name
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        reader = csv.reader(file)
+    with io.TextIOWrapper(open_text(path), encoding="utf-8-sig", newline="") as file:
+        beginning = file.read(HEAD_LETTERS)
+        file.seek(0)
+        reader = csv.reader(file, delimiter=max(DELIMITERS, key=beginning.count))
         try:
             head = list(islice(reader, HEAD_LINES))
             first = head[0][0].strip() if head and head[0] else ""
@@ -62,7 +69,8 @@ def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
                 ids, tick_s = {}, 1.0
             else:
                 raise FileRefusedError(where, "the file is not an export from APDM software", EXPORT_AGAIN)
-            rows = _numbers([*head[first_row:], *reader], len(head[first_row - 1]), first_row, where)
+            cut = CutEnd()
+            rows = _numbers([*head[first_row:], *reader], len(head[first_row - 1]), first_row, where, cut)
         except (csv.Error, UnicodeDecodeError) as error:
             raise FileRefusedError(where, "the file is not comma-separated text", EXPORT_AGAIN) from error
     last = max((place for found in columns.values() for places in found for place in places), default=0)
@@ -71,14 +79,14 @@ def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
     name_of_clock = FileClock(where, lambda row: f"line {row + first_row + 1}", TIME, tick_s)
     clock = whole_clock(rows[:, 0], name_of_clock, EXPORT_AGAIN)
     stamps, rows = clock.stamps[clock.is_new], rows[clock.is_new]
-    opals = []
+    opals, findings = [], (*cut.findings(path), *clock.findings)
     for name, places in columns.items():
         acc, gyr, mag, q = (rows[:, list(found)] if found else None for found in places)
         assert acc is not None  # `_found` refuses a sensor without
         assert gyr is not None
         known = tuple(filter(None, [ids.get(name)]))
         called = ids.get(name, name)
-        opals.append(RecordedOpal(name, called, known, stamps, tick_s, acc, gyr, q, mag, rate_hz, clock.findings))
+        opals.append(RecordedOpal(name, called, known, stamps, tick_s, acc, gyr, q, mag, rate_hz, findings))
     return tuple(opals)
 
 
@@ -176,27 +184,33 @@ def _found(columns: Sequence[tuple[int, ...]], sensor: str, where: str) -> Colum
     return tuple(columns)
 
 
-def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> FloatArray:
+def _numbers(lines: list[list[str]], width: int, first_row: int, where: str, cut: CutEnd) -> FloatArray:
     """(n, width) cells as numbers, NaN where one is empty."""
     lines = [line for line in lines if any(cell.strip() for cell in line)]
     if not lines:
         return np.empty((0, width))
     for number, line in enumerate(lines, start=first_row + 1):
-        if len(line) != width:
-            raise FileRefusedError(
-                f"{where}, line {number}",
-                "the line has {count} cells, but the header has {width}",
-                "The file is cut off or damaged; export it again",
-                count=len(line),
-                width=width,
-            )
+        if len(line) == width:
+            cut.note_whole()
+            continue
+        refusal = FileRefusedError(
+            f"{where}, line {number}",
+            "the line has {count} cells, but the header has {width}",
+            "The file is cut off or damaged; export it again",
+            count=len(line),
+            width=width,
+        )
+        if len(line) > width:
+            raise refusal
+        cut.note_cut(refusal)
+    lines = lines[: len(lines) - len(cut.refusals)]
     try:
-        return np.array([[float(cell) if cell else np.nan for cell in line] for line in lines], dtype=np.float64)
+        return np.array([[number_in(cell) for cell in line] for line in lines], dtype=np.float64).reshape(-1, width)
     except ValueError:
         for number, line in enumerate(lines, start=first_row + 1):
             for cell in line:
                 try:
-                    float(cell or "nan")
+                    number_in(cell)
                 except ValueError:
                     raise FileRefusedError(
                         f"{where}, line {number}", "{cell} is not a number", EXPORT_AGAIN, cell=quoted(cell)

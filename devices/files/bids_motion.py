@@ -146,7 +146,7 @@ def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> Importe
     kind = RateKind.INSTANTANEOUS if first.rate_kind == DERIVED else None
     kind = RateKind(first.rate_kind) if first.rate_kind in set(RateKind) else kind
     info = SensorInfo(serial=first.sensor or point, model=system.maker, rate_hz=rate_hz, rate_kind=kind)
-    findings = list(clock.findings)
+    findings = [*system.of_rows, *clock.findings]
     if block.is_rate_derived:
         findings.append(Finding("rate_from_orientation", Severity.INFO, ""))
     if q is not None and not is_up:

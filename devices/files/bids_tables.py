@@ -7,8 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from core.findings import Finding
 from core.samples import FloatArray
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.tables import CutEnd, number_in
+from devices.files.text_files import open_text
 from devices.files.trial import ImportedSensor
 
 MOTION, CHANNELS, SETTINGS = "_motion.tsv", "_channels.tsv", "_motion.json"
@@ -50,6 +53,7 @@ class MotionSystem:
     maker: str = ""
     started: str = ""
     is_simulated: bool = False
+    of_rows: tuple[Finding, ...] = ()
     sensors: list[ImportedSensor] = field(default_factory=list)
 
 
@@ -109,15 +113,17 @@ def read_system(base: Path) -> MotionSystem:
     except ValueError:
         rate_hz = np.nan
     maker = " ".join(str(settings.get(name, "")) for name in ("Manufacturer", "ManufacturersModelName"))
+    rows, of_rows = _read_rows(motion_path, len(channels))
     return MotionSystem(
         base=base,
-        rows=_read_rows(motion_path, len(channels)),
+        rows=rows,
         points=points,
         channels=channels,
         rate_hz=rate_hz if LEAST_RATE_HZ <= rate_hz <= MOST_RATE_HZ else None,
         maker=maker.replace("n/a", "").strip()[:100],
         started=_acquired(base),
         is_simulated=settings.get(IS_SIMULATED) is True,
+        of_rows=of_rows,
     )
 
 
@@ -184,26 +190,30 @@ def _read_settings(path: Path) -> Mapping[str, object]:
     return settings
 
 
-def _read_rows(path: Path, width: int) -> FloatArray:
-    """(n, width) samples."""
-    rows = []
+def _read_rows(path: Path, width: int) -> tuple[FloatArray, tuple[Finding, ...]]:
+    """(n, width) samples, and what was left out."""
+    rows: list[FloatArray] = []
+    cut = CutEnd()
     for number, text in _lines(path):
         if not text.strip():
             continue
         cells = text.split("\t")
         here = f"{path.name}, line {number}"
         if len(cells) != width:
-            raise FileRefusedError(
+            refusal = FileRefusedError(
                 here,
                 "the line has {count} cells, but the channel table has {width} channels",
                 EXPORT_AGAIN,
                 count=len(cells),
                 width=width,
             )
+            if len(cells) > width or not rows:
+                raise refusal
+            cut.note_cut(refusal)
+            continue
+        cut.note_whole()
         try:
-            rows.append(
-                np.array([np.nan if cell.strip().lower() in MISSING else float(cell) for cell in cells], dtype=float)
-            )
+            rows.append(np.array([np.nan if cell.strip().lower() in MISSING else number_in(cell) for cell in cells]))
         except ValueError as error:
             if number == 1:
                 raise FileRefusedError(
@@ -215,12 +225,12 @@ def _read_rows(path: Path, width: int) -> FloatArray:
             raise FileRefusedError(here, "a value is not a number ({why})", EXPORT_AGAIN, why=quoted(error)) from error
     values = np.array(rows, dtype=np.float64).reshape(len(rows), width)
     values[~np.isfinite(values)] = np.nan
-    return values
+    return values, cut.findings(path)
 
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:
     """Number and text of each line, without its end."""
-    with path.open("rb") as file:
+    with open_text(path) as file:
         for number, raw in enumerate(iter(lambda: file.readline(LONGEST_LINE), b""), 1):
             try:
                 yield number, raw.decode("utf-8-sig" if number == 1 else "utf-8").rstrip("\r\n")

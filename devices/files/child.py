@@ -11,7 +11,8 @@ import sys
 
 from devices.files.limits import limit_this_process
 
-TOML, SITE, TRIAL, GATHER, REFERENCE, QUESTION = "toml", "site", "trial", "gather", "reference", "question"
+TOML, SITE, TRIAL, GATHER, REFERENCE = "toml", "site", "trial", "gather", "reference"
+QUESTION, PREVIEW = "question", "preview"
 WORD = "read-foreign-files"  # the argument of a frozen program that is started as this process
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 

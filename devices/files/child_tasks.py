@@ -5,6 +5,7 @@ import mimetypes
 import os
 import signal
 import sys
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO
@@ -12,16 +13,29 @@ from typing import BinaryIO
 import pyarrow as pa
 import pyarrow.csv as pcsv
 
-from devices.files.answers import Array, Details, details_of, details_of_document, receive, send
+from devices.files.answers import Array, Details, details_of, details_of_document, receive, send, value_from
 from devices.files.bids_tables import folders_of_scans, tables_beside
-from devices.files.child import GATHER, MEMORY, QUESTION, READ, REFERENCE, REFUSED, SITE, TOML, TRIAL, UNFORESEEN
+from devices.files.child import (
+    GATHER,
+    MEMORY,
+    PREVIEW,
+    QUESTION,
+    READ,
+    REFERENCE,
+    REFUSED,
+    SITE,
+    TOML,
+    TRIAL,
+    UNFORESEEN,
+)
 from devices.files.limits import forbid_reading, limit_processor_time
 from devices.files.references.reading import read_reference
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import IN_THIS_PROCESS
 from devices.files.site_files import read_site
 from devices.files.system_calls import refuse_system_calls
-from devices.files.trial import BESIDE_INERTIAL
+from devices.files.table_choices import TableChoices
+from devices.files.trial import BESIDE_INERTIAL, registers_beside
 
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 IS_LINUX: bool = sys.platform == "linux"
@@ -79,9 +93,11 @@ def _load_for(task: str) -> None:
     pcsv.read_csv(pa.py_buffer(b"a\n1\n"), pcsv.ReadOptions(use_threads=False)).column(0).to_numpy()
     if task == QUESTION:
         import_module("devices.files.parquet_questions")
-    if task in (TRIAL, GATHER, REFERENCE):
+    if task in (TRIAL, GATHER, REFERENCE, PREVIEW):
         mimetypes.init()  # reads the system's tables, which a spreadsheet's reader asks for
         import_module("devices.files.formats")
+    if task == PREVIEW:
+        import_module("devices.files.table_preview")
 
 
 def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
@@ -89,7 +105,11 @@ def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
     if asked["task"] not in (TRIAL, GATHER):
         return [Path(asked["path"])], []
     named = list(map(Path, asked["files"]))
-    beside = [other for path in named for other in (path.with_name(BESIDE_INERTIAL), *tables_beside(path))]
+    beside = [
+        other
+        for path in named
+        for other in (path.with_name(BESIDE_INERTIAL), *registers_beside(path), *tables_beside(path))
+    ]
     return [*named, *beside], [folder for path in named for folder in folders_of_scans(path)]
 
 
@@ -127,14 +147,19 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         if not IS_LINUX:
             _limit_reference(path)
         return details_of(read_reference(path), arrays)
+    if task == PREVIEW:
+        from devices.files.table_preview import preview_of  # as below
+
+        return details_of(preview_of(Path(asked["path"]), value_from(TableChoices, asked["choices"])), arrays)
     files = list(map(Path, asked["files"]))
+    choices = value_from(Mapping[str, TableChoices], asked["choices"])
     if task == GATHER:
         from devices.files.gathering import gather  # as below
 
-        return details_of(gather(files), arrays)
+        return details_of(gather(files, choices, are_one=asked["are_one"]), arrays)
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
-    return details_of(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
+    return details_of(read_trial(asked["format"], files, asked["rate_hz"], choices), arrays)
 
 
 def _limit_reference(path: Path) -> None:

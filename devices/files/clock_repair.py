@@ -14,7 +14,8 @@ from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray
 from devices.files.orientation_rates import Numbers
 from devices.files.refusal import FileRefusedError
-from devices.files.tables import CORRECT_IT, Table
+from devices.files.table_header import CORRECT_IT
+from devices.files.tables import Table
 
 SPLIT_IT = "Split the recording there, or export it again"
 FEW = 8  # samples in a row whose stamps may be wrong without another sign that they are

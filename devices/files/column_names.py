@@ -28,26 +28,48 @@ class Quantity(StrEnum):
 WORDS = {  # a word that names a quantity
     **dict.fromkeys(("acc", "accel", "acceleration", "accelerometer", "accelerations", "accelerometers"), Quantity.ACC),
     "freeacc": Quantity.FREE_ACC,
+    **dict.fromkeys(("beschleunigungsmesser", "accéléromètre", "acelerómetro", "accelerometro"), Quantity.ACC),
     **dict.fromkeys(("gyr", "gyro", "gyros", "gyroscope", "gyroscopes", "omega", "angvel"), Quantity.GYR),
+    **dict.fromkeys(("gyroskop", "giroscopio", "giroscópio", "gyroscoop", "drehrate"), Quantity.GYR),
     **dict.fromkeys(("mag", "magn", "magneto", "magnetometer", "magnetometers"), Quantity.MAG),
     **dict.fromkeys(("quat", "quaternion", "quaternions", "orientation"), Quantity.QUAT),
     **dict.fromkeys(("time", "timestamp", "timestamps", "times"), Quantity.TIME),
+    **dict.fromkeys(("zeit", "zeitstempel", "temps", "tiempo", "tempo", "tijd"), Quantity.TIME),
 }
 LETTERS = {"a": Quantity.ACC, "g": Quantity.GYR, "w": Quantity.GYR, "m": Quantity.MAG, "q": Quantity.QUAT}  # "ax", "q0"
 PHRASES = (  # of several words, written as the one above
-    (r"angular[\W_]*(?:velocity|rate)|rotation[\W_]*rate|turn[\W_]*rate|rate[\W_]*of[\W_]*turn", " gyr "),
+    (r"angular[\W_]*(?:velocity|rate|speed)|rotation[\W_]*rate|turn[\W_]*rate|rate[\W_]*of[\W_]*turn", " gyr "),
+    (r"winkelgeschwindigkeit|vitesse[\W_]*angulaire|velocidad[\W_]*angular|velocit[aà][\W_]*angolare|角速度", " gyr "),
+    (r"gyro[\W_]*rotation", " gyr "),
     (r"(?:free|linear|lin|user)[\W_]*acc(?:el(?:eration|erometer)?)?", " freeacc "),
-    (r"specific[\W_]*force", " acc "),
-    (r"magnetic[\W_]*field", " mag "),
-    (r"time[\W_]*stamp", " timestamp "),
+    (r"lineare?[\W_]*beschleunigung|acc[eé]l[eé]ration[\W_]*lin[eé]aire|linear[\W_]*versnelling", " freeacc "),
+    (r"accelerometer[\W_]*acceleration|specific[\W_]*force", " acc "),
+    (r"beschleunigung|acc[eé]l[eé]ration|aceleraci[oó]n|accelerazione|versnelling|加速度", " acc "),
+    (r"\bas(?=[xyz]\b)", " gyr "),  # "AsX": angular speed, of WitMotion
+    (r"\bgf(?=[xyz]\b)", " acc "),  # "gFx": of Physics Toolbox
+    (r"magnetic[\W_]*field|magnetfeld|磁场", " mag "),
+    (r"time[\W_]*stamp|时间", " timestamp "),
 )
+SHORT = re.compile(r"([agw])_([xyz])")  # in small letters: "A_x" may be of a sensor "A"
 OTHER_WORDS = frozenset(
     str.split(
         "raw uncal uncalibrated norm magnitude mean std sd var bias offset temp temperature range scale delta inc "
         "jerk euler angle angles roll pitch yaw error status start stop end fine"
     )
 )
-EMPTY_WORDS = frozenset(str.split("data value values cal calib calibrated signal axis unix epoch utc elapsed the in"))
+EMPTY_WORDS = frozenset(
+    str.split(
+        "data value values cal calib calibrated signal axis the in unix epoch epoc utc elapsed since reboot boot "
+        "logging"
+    )
+)
+ABSOLUTE_WORDS = frozenset(str.split("unix epoch epoc utc timestamp"))  # of times that files of one trial share
+SENSOR_NAMES = frozenset(  # of columns that state which sensor a row is from
+    str.split(
+        "device devicename deviceid deviceaddress sensor sensorname sensorid imu imuid imuname node nodeid mac "
+        "macaddress address serial serialnumber 设备名称"
+    )
+)
 COUNTERS = frozenset(
     str.split(
         "counter packetcounter samplecounter framecounter sample samplenumber sampleindex samplenr frame "
@@ -64,7 +86,7 @@ AXES = {Quantity.QUAT: ("w", "x", "y", "z")}
 XYZ = ("x", "y", "z")
 SCALAR_FIRST = dict(zip("0123", "wxyz", strict=True))  # q0 is the scalar; where q1 to q4 have it is not agreed on
 
-SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "d": 86_400.0}
 SCALES: Mapping[Quantity, Mapping[str, float]] = {
     Quantity.ACC: FORCE_UNITS,
     Quantity.FREE_ACC: FORCE_UNITS,
@@ -73,7 +95,7 @@ SCALES: Mapping[Quantity, Mapping[str, float]] = {
 }
 SPELLINGS: Mapping[Quantity, Mapping[str, str]] = {  # as `_plain_unit` leaves them
     Quantity.ACC: {
-        **dict.fromkeys(("m/s2", "ms2", "m/s/s", "ms-2", "mps2", "m/sec2", "mpers2", "m/ss"), "m/s2"),
+        **dict.fromkeys(("m/s2", "ms2", "m/s/s", "mss", "ms-2", "mps2", "m/sec2", "mpers2", "m/ss"), "m/s2"),
         **dict.fromkeys(("meter/s2", "meters/s2", "metres/s2", "meters/second2", "metres/second2"), "m/s2"),
         "g": "g",
         "mg": "mg",
@@ -82,13 +104,15 @@ SPELLINGS: Mapping[Quantity, Mapping[str, str]] = {  # as `_plain_unit` leaves t
         **dict.fromkeys(("rad/s", "rads", "rad/sec", "radps", "rads-1", "radpers", "radians/s", "radian/s"), "rad/s"),
         **dict.fromkeys(("deg/s", "degs", "dps", "°/s", "°s-1", "deg/sec", "degps", "degs-1", "degpers"), "deg/s"),
         **dict.fromkeys(("degrees/s", "degree/s", "degrees/sec", "degree/second", "degrees/second"), "deg/s"),
+        **dict.fromkeys(("d/s", "°/sec", "º/s", "grad/s"), "deg/s"),
         **dict.fromkeys(("mdeg/s", "mdps", "mdegs"), "mdeg/s"),
     },
     Quantity.TIME: {
         **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
-        **dict.fromkeys(("ms", "msec", "millis", "millisecond", "milliseconds"), "ms"),
-        **dict.fromkeys(("us", "µs", "μs", "usec", "micros", "microsecond", "microseconds"), "us"),
-        **dict.fromkeys(("ns", "nsec", "nanosecond", "nanoseconds"), "ns"),
+        **dict.fromkeys(("ms", "msec", "millis", "millisec", "millisecond", "milliseconds"), "ms"),
+        **dict.fromkeys(("us", "µs", "μs", "usec", "micros", "microsec", "microsecond", "microseconds"), "us"),
+        **dict.fromkeys(("ns", "nsec", "nanos", "nanosecond", "nanoseconds"), "ns"),
+        **dict.fromkeys(("d", "day", "days"), "d"),
     },
     Quantity.MAG: dict.fromkeys(("ut", "µt", "μt", "nt", "gauss", "ga", "mgauss", "au"), "any"),
     Quantity.QUAT: {},
@@ -129,14 +153,21 @@ class SensorColumns:
         return (*self.acc, *self.gyr, *self.mag, *self.quat, *filter(None, (self.time, self.counter)))
 
 
+def plain_name(name: str) -> str:
+    """A name in small letters, without what joins its words."""
+    return re.sub(r"[\W_]+", "", name).lower()
+
+
 def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
     """What a column's name states, with its unit where that is elsewhere; None where it is something else."""
     text, bracketed = without_brackets(name)
-    plain = re.sub(r"[\W_]+", "", text).lower()
+    plain = plain_name(text)
     if plain in COUNTERS:
         return NamedQuantity("", Quantity.COUNTER, "", "")
     if plain in SAMPLE_RATES:
         return NamedQuantity("", Quantity.SAMPLE_RATE, "", "")
+    if short := SHORT.fullmatch(text.strip()):
+        text = "".join(short.groups())
     for phrase, word in PHRASES:
         text = re.sub(phrase, word, text, flags=re.IGNORECASE)
     spans = [(match.start(), match.end()) for match in WORD.finditer(text)]
@@ -146,11 +177,16 @@ def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
     found = {at: stated for at, word in enumerate(words) if (stated := _stated_by(word)) is not None}
     if not found and words[:1] == ["t"] and (len(words) == 1 or unit_of(Quantity.TIME, "".join(words[1:]))):
         found = {0: (Quantity.TIME, "")}
+    if not found and (elapsed := _elapsed_unit(words, bracketed or unit)):
+        return NamedQuantity("", Quantity.TIME, "", elapsed)
+    found = found or _axis_by_unit(words, bracketed or unit)
+    times = {at: stated for at, stated in found.items() if stated[0] is Quantity.TIME}
+    spent = {*found, *(at for at, word in enumerate(words) if word.lower() in EMPTY_WORDS)}
+    found = times or found  # "gyroTimestamp"
     if len({quantity for quantity, _ in found.values()}) != 1:
         return None
     quantity = next(iter(found.values()))[0]
     axis = next((axis for _, axis in found.values() if axis), "")
-    spent = {*found, *(at for at, word in enumerate(words) if word.lower() in EMPTY_WORDS)}
     if not axis and quantity is not Quantity.TIME:
         at = next((k for k in reversed(range(len(words))) if k not in spent and _axis(quantity, words[k])), -1)
         axis = _axis(quantity, words[at]) if at >= 0 else ""
@@ -161,6 +197,22 @@ def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
     return NamedQuantity(_left_of(text, spans, spent | of_unit), quantity, axis, reported or spoken)
 
 
+def _axis_by_unit(words: Sequence[str], unit: str) -> dict[int, tuple[Quantity, str]]:
+    """What the unit gives of a name that has nothing but an axis: "x-axis (deg/s)"."""
+    left = [k for k, word in enumerate(words) if word.lower() not in EMPTY_WORDS]
+    axis = _axis(Quantity.ACC, words[left[0]]) if len(left) == 1 else ""
+    quantity = next((one for one in (Quantity.ACC, Quantity.GYR) if unit_of(one, unit)), None)
+    return {left[0]: (quantity, axis)} if axis and quantity is not None else {}
+
+
+def _elapsed_unit(words: Sequence[str], unit: str) -> str:
+    """The unit of time of a name that has no other word for a quantity: "elapsed (s)", "seconds_elapsed"."""
+    left = [word for word in words if word.lower() not in EMPTY_WORDS]
+    if len(left) == len(words) or len(left) > 1:
+        return ""
+    return unit_of(Quantity.TIME, left[0] if left else unit)
+
+
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of any quantity."""
     return any(unit_of(quantity, text) for quantity in SPELLINGS)
@@ -168,8 +220,53 @@ def is_unit(text: str) -> bool:
 
 def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None) -> tuple[SensorColumns, ...]:
     """Find sensors with acceleration and rate about three axes; FileRefusedError for two columns alike."""
-    reported = units or {}
-    meant = {name: meaning for name in names if (meaning := meaning_of(name, reported.get(name, ""))) is not None}
+    return tuple(one for one in _columns_by_sensor(names, units or {}, None) if one.acc and one.gyr)
+
+
+def half_columns(
+    names: Sequence[str], units: Mapping[str, str] | None = None, of_file: Quantity | None = None
+) -> tuple[SensorColumns, ...]:
+    """Find sensors of which only acceleration or only rates are there, where no sensor is whole.
+
+    `of_file`: what columns hold that name nothing but an axis. Raises FileRefusedError for two columns alike.
+    """
+    found = _columns_by_sensor(names, units or {}, of_file)
+    return () if any(one.acc and one.gyr for one in found) else found
+
+
+def quantity_of_file(stem: str) -> Quantity | None:
+    """What a file's name states of its content: "lt_Gyroscope"; None for nothing, or for several quantities."""
+    found = {stated for _, stated in _quantities_in(stem)}
+    return found.pop() if len(found) == 1 else None
+
+
+def without_quantity(stem: str) -> str:
+    """A file's name without the quantity and rate in it: what the files of one sensor have in common."""
+    stem = re.sub(r"[_\s-]*\d+(\.\d+)?\s?Hz", "", stem, flags=re.IGNORECASE)
+    for word, _ in _quantities_in(stem):
+        stem = re.sub(rf"(?:total)?[_\s-]*{re.escape(word)}", "", stem, flags=re.IGNORECASE)
+    return stem.strip(" _-.")
+
+
+def _quantities_in(stem: str) -> list[tuple[str, Quantity]]:
+    """Words of a file's name and the quantity of each; magnetometers and the rest are none of a sensor's halves."""
+    found: list[tuple[str, str]] = []
+    for phrase, word in PHRASES:
+        found += [(match[0], word.strip()) for match in re.finditer(phrase, stem, re.IGNORECASE)]
+        stem = re.sub(phrase, "\0", stem, flags=re.IGNORECASE)
+    found += [(word, word.lower()) for word in WORD.findall(stem)]
+    halves = (Quantity.ACC, Quantity.FREE_ACC, Quantity.GYR)
+    return [(word, WORDS[meant]) for word, meant in found if WORDS.get(meant) in halves]
+
+
+def _columns_by_sensor(
+    names: Sequence[str], units: Mapping[str, str], of_file: Quantity | None
+) -> tuple[SensorColumns, ...]:
+    """All sensors of which acceleration, rates or both are there."""
+    meant = {name: meaning for name in names if (meaning := meaning_of(name, units.get(name, ""))) is not None}
+    for name in names:
+        if of_file is not None and name not in meant and name.strip().lower() in XYZ:
+            meant[name] = NamedQuantity("", of_file, name.strip().lower(), "")
     places: dict[tuple[str, Quantity], dict[str, list[str]]] = {}
     called: dict[str, str] = {}
     for name, meaning in meant.items():
@@ -190,7 +287,7 @@ def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None)
     for key, sensor in called.items():
         acc = whole(key, Quantity.ACC) or whole(key, Quantity.FREE_ACC)
         gyr = whole(key, Quantity.GYR)
-        if not acc or not gyr:
+        if not acc and not gyr:
             continue
         sensors.append(
             SensorColumns(
@@ -209,13 +306,13 @@ def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None)
 def _one_time(
     places: Mapping[tuple[str, Quantity], Mapping[str, list[str]]], meant: Mapping[str, NamedQuantity], key: str
 ) -> str:
-    """The column of times of a sensor, or of all; of several the one that names its unit."""
+    """The column of times of a sensor, or of all: one that names its unit, and rather one that files share."""
     for owner in (key, ""):
         names = places.get((owner, Quantity.TIME), {}).get("", [])
-        reported = [name for name in names if meant[name].unit]
-        if names:
-            _refuse_both(reported or names)
-            return (reported or names)[0]
+        reported = [name for name in names if meant[name].unit] or names
+        shared = [name for name in reported if ABSOLUTE_WORDS & {word.lower() for word in WORD.findall(name)}]
+        if reported:
+            return (shared or reported)[0]
     return ""
 
 

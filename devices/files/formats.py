@@ -7,7 +7,7 @@ from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
-from devices.files.csv_tables import csv_trial, is_csv
+from devices.files.csv_tables import choices_for, csv_recording, csv_trial, is_csv, why_no_csv
 from devices.files.matlab_tables import matlab_trial
 from devices.files.matlab_variables import is_matlab
 from devices.files.movella_dot import dot_recording, is_movella_dot, movella_dot_trial
@@ -16,11 +16,15 @@ from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
+from devices.files.sensor_mapping import read_mapping, with_names, without_mappings
 from devices.files.session_toml import FILE_NAME
 from devices.files.shimmer_tables import is_shimmer, shimmer_trial
+from devices.files.table_choices import NOTHING_STATED, StatedChoices
+from devices.files.text_files import as_utf8
 from devices.files.trial import SIMULATED_MARK, ImportedTrial
 from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.ximu3_files import is_ximu3, ximu3_recording, ximu3_trial
+from devices.files.ximu_files import is_ximu, ximu_recording, ximu_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
 
 HEAD_BYTES = 65_536  # heads of many sensors are long
@@ -46,6 +50,7 @@ FORMATS: Mapping[str, FileFormat] = {
     "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True, trial_name=dot_recording),
     "xsens-mti": FileFormat(is_mti_stream, mti_trial, is_one_sensor=True),
     "ximu3": FileFormat(is_ximu3, ximu3_trial, is_one_sensor=True, trial_name=ximu3_recording),
+    "ximu": FileFormat(is_ximu, ximu_trial, is_one_sensor=True, trial_name=ximu_recording),
     "shimmer": FileFormat(is_shimmer, shimmer_trial, is_one_sensor=True),
     "mvnx": FileFormat(is_mvnx, mvnx_trial),
     "apdm": FileFormat(is_apdm, apdm_trial),
@@ -54,16 +59,32 @@ FORMATS: Mapping[str, FileFormat] = {
     "xdf": FileFormat(is_xdf, xdf_trial),
     "matlab": FileFormat(is_matlab, matlab_trial, is_one_sensor=True),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
-    "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
+    "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True, trial_name=csv_recording),  # the last that is asked
 }
 
 
-def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
-    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError."""
+def read_trial(
+    name: str, files: Sequence[Path], rate_hz: float | None, choices: StatedChoices = NOTHING_STATED
+) -> ImportedTrial:
+    """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError.
+
+    `choices`: what somebody states of tables, whose format it takes the place of.
+    """
     for path in files:
         _refuse_missing(path)
-    every = list({path.resolve(): path for path in files}.values())
-    found = FORMATS[name or recognised(every)].trial(every, rate_hz)
+    every, mappings = without_mappings(list({path.resolve(): path for path in files}.values()))
+    if not every:
+        raise FileRefusedError(
+            files[0].name,
+            "the file names sensors and holds no recording",
+            "Choose the recordings together with this file",
+        )
+    if any(choices_for(path, choices) is not None for path in every):
+        found = csv_trial(every, rate_hz, choices)
+    else:
+        found = FORMATS[name or recognised(every)].trial(every, rate_hz)
+    for path in mappings:
+        found = with_names(found, read_mapping(path))
     return replace(found, is_simulated=found.is_simulated or any(map(_is_of_simulated_session, every)))
 
 
@@ -74,12 +95,7 @@ def recognised(files: Sequence[Path]) -> str:
         _refuse_missing(path)
         name = format_of(path)
         if name is None:
-            raise FileRefusedError(
-                path.name,
-                "the file format is not recognised",
-                "Supported formats: {formats}. If the file has one of these formats, give the format with --as",
-                formats=", ".join(FORMATS),
-            )
+            raise why_not_recognised(path)
         found.setdefault(name, path)
     if len(found) > 1:
         (one, first), (other, second), *_ = found.items()
@@ -94,12 +110,23 @@ def recognised(files: Sequence[Path]) -> str:
     return next(iter(found))
 
 
+def why_not_recognised(path: Path) -> FileRefusedError:
+    """Why a file or folder is of no format; raises OSError where it cannot be read."""
+    reason = why_no_csv(path) if path.is_file() else None  # of the others a few bytes decide
+    return reason or FileRefusedError(
+        path.name,
+        "the file format is not recognised",
+        "Supported formats: {formats}. If the file has one of these formats, give the format with --as",
+        formats=", ".join(FORMATS),
+    )
+
+
 def format_of(path: Path) -> str | None:
     """Give the format of a file or folder; None for none; raises OSError where it cannot be read."""
     head = b""
     if path.is_file():
         with path.open("rb") as file:
-            head = file.read(HEAD_BYTES)
+            head = as_utf8(file.read(HEAD_BYTES))
     return next((name for name, one in FORMATS.items() if one.is_it(path, head)), None)
 
 

@@ -3,25 +3,34 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from devices.files.formats import FORMATS, format_of
+from devices.files.csv_tables import FORMAT as CSV
+from devices.files.csv_tables import choices_for
+from devices.files.formats import FORMATS, format_of, why_not_recognised
 from devices.files.refusal import FileRefusedError
+from devices.files.sensor_mapping import read_mapping, without_mappings
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_names import without_site
+from devices.files.table_choices import NOTHING_STATED, StatedChoices
+from devices.files.table_layout import fingerprint_of
 from devices.files.trial import SESSION, FilesOfTrial, Gathered
 
 MOST_FILES = 500  # what is dragged may be a whole disk
 
 
-def gather(paths: Sequence[Path]) -> Gathered:
+def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, are_one: bool = False) -> Gathered:
     """Group files to trials by format, folder and common name, in the order of names; a folder of no format is opened.
 
-    What is refused is returned beside them; raises FileRefusedError where there are no files, or too many.
+    What is refused is returned beside them; raises FileRefusedError where there are no files, or too many. `choices`:
+    what somebody states of tables. `are_one`: files of one sensor each are one trial, whatever their names.
     """
     refused: list[FileRefusedError] = []
+    tables: list[str] = []
     found: dict[tuple[str, Path, str], list[str]] = {}
-    for path in _opened_up(paths):
+    opened, mappings = without_mappings(_opened_up(paths))
+    for path in opened:
         try:
-            name = SESSION if (path / FILE_NAME).is_file() else format_of(path)
+            is_stated = choices_for(path, choices) is not None
+            name = CSV if is_stated else SESSION if (path / FILE_NAME).is_file() else format_of(path)
         except OSError as problem:
             why = problem.strerror or type(problem).__name__
             refused.append(
@@ -31,9 +40,19 @@ def gather(paths: Sequence[Path]) -> Gathered:
             )
             continue
         if name is None:
-            refused.append(FileRefusedError(path.name, "this file format is not supported", "Leave this file out"))
+            refused.append(why_not_recognised(path))
+            tables += [str(path)] if path.is_file() and fingerprint_of(path) else []
             continue
-        found.setdefault((name, path.parent, _common(name, path)), []).append(str(path))
+        common = (
+            path.parent.name if are_one and name != SESSION and FORMATS[name].is_one_sensor else _common(name, path)
+        )
+        found.setdefault((name, path.parent, common), []).append(str(path))
+    if not found and mappings and not refused:
+        raise FileRefusedError(
+            mappings[0].name,
+            "the file names sensors and holds no recording",
+            "Choose the recordings together with this file",
+        )
     if not found and not refused:
         raise FileRefusedError(
             paths[0].name,
@@ -41,10 +60,25 @@ def gather(paths: Sequence[Path]) -> Gathered:
             "Choose the folder with the recordings",
         )
     trials = tuple(
-        FilesOfTrial(name, (common if len(files) > 1 else Path(files[0]).stem) or folder.name, tuple(files))
+        FilesOfTrial(
+            name,
+            (common if len(files) > 1 else Path(files[0]).stem) or folder.name,
+            (*files, *(str(path) for path in mappings if path.parent == folder and _is_named_by(path, name, files))),
+        )
         for (name, folder, common), files in found.items()
     )
-    return Gathered(trials, tuple(refused))
+    return Gathered(trials, tuple(refused), tuple(tables))
+
+
+def _is_named_by(mapping: Path, name: str, files: Sequence[str]) -> bool:
+    """Whether a mapping may name sensors of these files: one of each is named by its id, which its file's name has."""
+    if name == SESSION or not FORMATS[name].is_one_sensor:
+        return name != SESSION
+    try:
+        ids = read_mapping(mapping)
+    except FileRefusedError:
+        return True  # whoever reads it is told why
+    return any(key in Path(file).stem.upper() for key in ids for file in files)
 
 
 def _common(name: str, path: Path) -> str:

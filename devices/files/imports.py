@@ -13,9 +13,11 @@ from core.signal.clock_jumps import jump_of, spans_of
 from devices.files.clock_repair import SPLIT_IT
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.site_files import sensor_changes
-from devices.files.trial import ImportedSensor, ImportedTrial
+from devices.files.site_names import site_of_name
+from devices.files.trial import ImportedSensor, ImportedTrial, plain_id
 
 MAP = "--map"
+RECEIVER = "one receiver"  # the clock's id, where somebody states that the sensors shared one
 AS_IN = "Write the assignment as left_thigh=FILE_OR_SENSOR_ID,left_shank=FILE_OR_SENSOR_ID"
 
 
@@ -47,15 +49,42 @@ def parse_map(text: str) -> dict[Site, str]:
     return placement
 
 
-def place_trial(trial: ImportedTrial, placement: Mapping[Site, str], recording: str) -> ImportedFiles:
+def mapped_sites(trial: ImportedTrial) -> dict[Site, str]:
+    """Place the sensors that a mapping file names as parts of legs or pelvis; raises FileRefusedError for none."""
+    placement: dict[Site, str] = {}
+    for name in trial.mapped:
+        site = site_of_name(name)
+        if site is None:
+            continue
+        if site in placement:
+            raise FileRefusedError(MAP, "{site} is given twice", "Name each sensor position once", site=site)
+        placement[site] = name
+    if not placement:
+        raise FileRefusedError(
+            MAP,
+            "the mapping file names no part of a leg: {names}",
+            AS_IN,
+            names=", ".join(trial.mapped) or "-",
+        )
+    return placement
+
+
+def place_trial(
+    trial: ImportedTrial, placement: Mapping[Site, str], recording: str, *, is_one_receiver: bool = False
+) -> ImportedFiles:
     """Place a trial's sensors by name, id or file, time from the first sample; raises FileRefusedError."""
-    return place_sensors(
-        trial, [(site, _sensor_of(trial, site, value)) for site, value in placement.items()], recording
-    )
+    placed = [(site, _sensor_of(trial, site, value)) for site, value in placement.items()]
+    return place_sensors(trial, placed, recording, is_one_receiver=is_one_receiver)
 
 
-def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSensor]], recording: str) -> ImportedFiles:
-    """As `place_trial`, by the sensors themselves."""
+def place_sensors(
+    trial: ImportedTrial,
+    placed: Sequence[tuple[Site, ImportedSensor]],
+    recording: str,
+    *,
+    is_one_receiver: bool = False,
+) -> ImportedFiles:
+    """As `place_trial`, by the sensors themselves. `is_one_receiver`: somebody states that all share its clock."""
     for number, (site, sensor) in enumerate(placed):
         if any(sensor is other for _, other in placed[:number]):
             raise FileRefusedError(
@@ -63,6 +92,8 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
             )
         if site in [other for other, _ in placed[:number]]:
             raise FileRefusedError(recording, "{site} is given twice", "Name each sensor position once", site=site)
+    if is_one_receiver:
+        placed = [(site, _on_one_receiver(sensor)) for site, sensor in placed]
     sensors = [sensor for _, sensor in placed]
     _refuse_apart(sensors)
     _refuse_jumps(sensors)
@@ -71,7 +102,8 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
         site: replace(sensor.block, time_s=sensor.block.time_s - start_s) if start_s else sensor.block
         for site, sensor in placed
     }
-    left_out = [sensor.name for sensor in trial.sensors if not any(sensor is one for one in sensors)]
+    used = {sensor.name for sensor in sensors}
+    left_out = [sensor.name for sensor in trial.sensors if sensor.name not in used]
     left_out += [Path(unread.file).name for unread in trial.unread]
     findings = [Finding("file_left_out", Severity.INFO, recording, {"name": name}) for name in left_out]
     for site, sensor in placed:
@@ -80,11 +112,23 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
     return ImportedFiles(imu, sensors_of, tuple(findings), trial.is_simulated)
 
 
+def _on_one_receiver(sensor: ImportedSensor) -> ImportedSensor:
+    """The sensor on the clock of the receiver that somebody states; raises FileRefusedError where it has its own."""
+    if sensor.info.clock:
+        raise FileRefusedError(
+            sensor.name,
+            "its file gives it the clock {clock}, so the sensors did not share one receiver",
+            "Leave out the statement that the sensors shared one receiver (--one-receiver)",
+            clock=quoted(sensor.info.clock),
+        )
+    return replace(sensor, info=replace(sensor.info, clock=RECEIVER))
+
+
 def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:
     """The sensor that somebody calls `value`: a file first, then a name, then an id."""
     called = [sensor for sensor in trial.sensors if _is_file(value, sensor.file)]
     called = called or [sensor for sensor in trial.sensors if value.casefold() == sensor.name.casefold()]
-    called = called or [s for s in trial.sensors if _plain_id(value) in map(_plain_id, s.ids)]
+    called = called or [s for s in trial.sensors if plain_id(value) in map(plain_id, s.ids)]
     if len(called) == 1:
         return called[0]
     if called:
@@ -97,7 +141,7 @@ def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:
             names=names,
         )
     for unread in trial.unread:
-        if _is_file(value, unread.file) or _plain_id(value) in map(_plain_id, unread.ids):
+        if _is_file(value, unread.file) or plain_id(value) in map(plain_id, unread.ids):
             raise unread.refusal
     known = [f"{sensor.name} ({', '.join(sensor.ids)})" if sensor.ids else sensor.name for sensor in trial.sensors]
     raise FileRefusedError(
@@ -215,7 +259,3 @@ def _agreed(first: SensorInfo, later: SensorInfo) -> SensorInfo:
         rate_hz=first.rate_hz if first.rate_hz == later.rate_hz else None,
         rate_kind=first.rate_kind if first.rate_kind == later.rate_kind else None,
     )
-
-
-def _plain_id(sensor: str) -> str:
-    return sensor.strip().lstrip("_").upper()

@@ -19,12 +19,22 @@ from time import monotonic
 from typing import Any, TypeVar
 
 from devices.files import child
-from devices.files.answers import Array, BrokenAnswerError, Details, document_from, receive, send, value_from
+from devices.files.answers import (
+    Array,
+    BrokenAnswerError,
+    Details,
+    details_of,
+    document_from,
+    receive,
+    send,
+    value_from,
+)
 from devices.files.references.answers import reference_from
 from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
+from devices.files.table_choices import NOTHING_STATED, StatedChoices, TableChoices, TablePreview
 from devices.files.trial import Gathered, ImportedTrial
 
 FILES_EACH = 500
@@ -277,13 +287,20 @@ class LimitedReading:
         }
         return self._reader.ask(task, [file.path], file.where, partial(value_from, ReadSite), self.waiting)
 
-    def read_trial(self, format_name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
+    def read_trial(
+        self,
+        format_name: str,
+        files: Sequence[Path],
+        rate_hz: float | None,
+        choices: StatedChoices = NOTHING_STATED,
+    ) -> ImportedTrial:
         """As `formats.read_trial` does."""
         task = {
             "task": child.TRIAL,
             "format": format_name,
             "files": [str(path) for path in files],
             "rate_hz": rate_hz,
+            "choices": details_of(choices, []),
         }
         where = ", ".join(path.name for path in files)
         return self._reader.ask(task, files, where, partial(value_from, ImportedTrial), self.waiting)
@@ -301,9 +318,21 @@ class LimitedReading:
         except ReadingEndedError as ended:
             raise UNANSWERED.get(ended.cause, UNANSWERED[CRASH]) from ended
 
-    def gather(self, paths: Sequence[Path]) -> Gathered:
+    def preview(self, path: Path, stated: TableChoices) -> TablePreview:
+        """As `table_preview.preview_of` does."""
+        task = {"task": child.PREVIEW, "path": str(path), "choices": details_of(stated, [])}
+        return self._reader.ask(task, [path], path.name, partial(value_from, TablePreview), self.waiting)
+
+    def gather(
+        self, paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, are_one: bool = False
+    ) -> Gathered:
         """As `gathering.gather` does."""
-        task = {"task": child.GATHER, "files": [str(path) for path in paths]}
+        task = {
+            "task": child.GATHER,
+            "files": [str(path) for path in paths],
+            "choices": details_of(choices, []),
+            "are_one": are_one,
+        }
         return self._reader.ask(task, (), paths[0].name, partial(value_from, Gathered), self.waiting)
 
 

@@ -6,6 +6,7 @@ orientation, it gives the rates' unit by itself.
 """
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from core.samples import FloatArray
 from devices.files.orientation_rates import Numbers, derive_rates
@@ -20,6 +21,9 @@ FEW = 0.999  # of the rates that have to be possible: one damaged sample is no o
 NO_GRAVITY = "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2"
 TOO_FAST = "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor"
 RECORD_AGAIN = "Check the sensor's range and calibration with the manufacturer's program, and record again"
+GRAVITY_M_S2 = 9.81
+WINDOW_S, MOST_WINDOWS, LEAST_SAMPLES = 2.0, 60, 100  # as long as steps cancel out, and the bias of rates does not show
+RIGHT_M_S2, OTHER_M_S2 = 0.3, 0.6  # from gravity: the right unit at most, the other one at least
 TURNING_RAD_S = 0.2  # below, the noise of rates and orientation is what is compared
 
 
@@ -90,3 +94,40 @@ def times_the_turning(
     turned = np.linalg.norm(derive_rates(q_earth_from_sensor, counter, rate_hz), axis=1)
     is_turning = np.isfinite(speed) & (turned > TURNING_RAD_S)
     return float(np.median(speed[is_turning] / turned[is_turning])) if is_turning.any() else float(np.nan)
+
+
+def rate_unit_by_gravity(time_s: FloatArray, acc_m_s2: FloatArray, rates: FloatArray) -> str:
+    """Find the unit of rates (n, 3): "rad/s" or "deg/s", or empty where the motion does not show it.
+
+    Turned by the right rates into the axes in which a window begins, the specific force is gravity in the mean; by
+    others it is not. On 55 sensors of walking people and hinges the right unit left at most 0.3 m/s2, the other one
+    from none (legs that hardly turn) to 5.
+    """
+    steps_s = np.diff(time_s)
+    if len(steps_s) < LEAST_SAMPLES:
+        return ""
+    step_s = float(np.median(steps_s))
+    rows = max(round(WINDOW_S / step_s), 2) if step_s > 0 else len(time_s)
+    starts = np.arange(0, len(time_s) - rows, rows)
+    starts = starts[np.linspace(0, len(starts) - 1, min(len(starts), MOST_WINDOWS)).astype(int)]
+    at = starts[:, None] + np.arange(rows)
+    is_whole = np.isfinite(acc_m_s2[at]).all(axis=(1, 2)) & np.isfinite(rates[at]).all(axis=(1, 2))
+    is_whole &= (np.abs(time_s[at[:, -1]] - time_s[at[:, 0]] - (rows - 1) * step_s) < step_s) if len(at) else True
+    at = at[is_whole]
+    if not len(at):
+        return ""
+    off = {
+        unit: abs(_mean_turned(acc_m_s2[at], rates[at] * (scale * step_s)) - GRAVITY_M_S2)
+        for unit, scale in (("rad/s", 1.0), ("deg/s", np.pi / 180.0))
+    }
+    right, other = sorted(off, key=off.__getitem__)
+    return right if off[right] < RIGHT_M_S2 and off[other] > OTHER_M_S2 else ""
+
+
+def _mean_turned(acc_m_s2: FloatArray, turns_rad: FloatArray) -> float:
+    """The size of the mean specific force of windows (m, k, 3) in the axes in which each begins, in the median."""
+    turned, total = Rotation.identity(len(acc_m_s2)), np.zeros((len(acc_m_s2), 3))
+    for row in range(acc_m_s2.shape[1]):
+        total += turned.apply(acc_m_s2[:, row])
+        turned = turned * Rotation.from_rotvec(turns_rad[:, row])
+    return float(np.median(np.linalg.norm(total / acc_m_s2.shape[1], axis=1)))

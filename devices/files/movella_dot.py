@@ -154,7 +154,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
         counter=counter,
         block=block,
         is_gravity_added=is_gravity_added,
-        of_clock=clock.findings,
+        of_clock=(*table.findings, *clock.findings),
     )
 
 
@@ -291,6 +291,12 @@ def _specific_force(
         return table.matrix(ACC)[is_new], False
     if names >= set(VELOCITIES):
         return table.matrix(VELOCITIES)[is_new] * rate_hz, False
+    if names >= set(EULER) and not names & {*FREE_ACC, *GYR, *QUAT}:
+        raise FileRefusedError(
+            where,
+            "the file holds only Euler angles, as the payload Orientation (Euler) measures them, and no acceleration",
+            MEASURE_AGAIN,
+        )
     if not names >= set(FREE_ACC):
         raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", MEASURE_AGAIN)
     if q is None:

@@ -162,7 +162,7 @@ def _note_frame(found: MvnxFile, frame: ET.Element) -> None:
 
 def _numbers(found: MvnxFile, text: str, width: int, frame: str) -> FloatArray:
     try:
-        values = np.array(text.split(), dtype=np.float64)
+        values = np.array(text.replace(",", ".").split(), dtype=np.float64)
     except ValueError as error:
         raise FileRefusedError(
             f"{found.where}, frame {frame}",

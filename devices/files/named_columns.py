@@ -4,7 +4,7 @@ What a name does not say is found by size where size leaves one answer only, and
 two, the file is refused with the name that would settle it. What a name does say is held to the size, too.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.column_names import (
     SCALES,
+    XYZ,
     Quantity,
     SensorColumns,
     listed,
@@ -23,14 +24,17 @@ from devices.files.column_names import (
     sensor_columns,
     unit_of,
     without_brackets,
+    without_quantity,
 )
+from devices.files.halves import OPEN, Half, joined, unit_by_gravity
 from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size
 from devices.files.named_table import NamedTable
 from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.trial import ImportedSensor, ImportedTrial, read_each
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile, read_each
 
 GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels, by which a unit is found
+LEAST_DOWN = 0.3  # of the size of the mean, where a unit is found by size: acceleration without gravity has none
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
 NAME_THEM = (
@@ -39,12 +43,11 @@ NAME_THEM = (
 )
 
 
-def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedSensor]:
-    """Give a table's sensors, SI, seconds by its stamps; FileRefusedError for no sensor, bad units or times."""
-    try:
-        found = sensor_columns(list(table.columns), table.units)
-    except FileRefusedError as refusal:
-        raise FileRefusedError.stated_elsewhere(table.where, refusal.what, refusal.remedy, refusal.values) from None
+def sensors_of_table(table: NamedTable, rate_hz: float | None) -> tuple[list[ImportedSensor], list[UnreadFile]]:
+    """Give a table's sensors, SI, seconds by its stamps, and of several those that cannot be read.
+    FileRefusedError for no sensor, bad units or times of all.
+    """
+    found = [one for one in _columns_of(table) if one.acc and one.gyr]
     if not found:
         raise FileRefusedError(
             table.where,
@@ -52,9 +55,30 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
             NAME_THEM,
             names=listed([*table.columns, *table.left_out]) or "-",
         )
-    used = {name for one in found for name in one.names()}
-    others = [name for name in [*table.columns, *table.left_out] if name not in used]
-    return [_sensor(table, one, rate_hz, others) for one in found]
+    sensors: list[ImportedSensor] = []
+    unread: list[UnreadFile] = []
+    for one in found:
+        try:
+            sensors.append(_sensor(table, one, rate_hz, _others(table, found)))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(table.file, (one.sensor or table.called,), refusal))
+    if not sensors:
+        raise unread[0].refusal
+    return sensors, unread
+
+
+def halves_of_table(table: NamedTable, rate_hz: float | None) -> list[Half]:
+    """Give the acceleration or the angular rates of a table's sensors, none where it has both; raises as above."""
+    found = _columns_of(table)
+    if any(one.acc and one.gyr for one in found):
+        return []
+    halves = []
+    for one in found:
+        quantity = Quantity.ACC if one.acc else Quantity.GYR
+        sensor = _sensor(table, one, rate_hz, _others(table, found))
+        name = "_".join(filter(None, [without_quantity(table.called), one.sensor])) or Path(table.file).parent.name
+        halves.append(Half((str(Path(table.file).parent), name), quantity, sensor))
+    return halves
 
 
 def trial_of_tables(
@@ -62,18 +86,52 @@ def trial_of_tables(
     read: Callable[[Path], Sequence[NamedTable]],
     files: Sequence[Path],
     rate_hz: float | None = None,
+    *,
+    may_be_halves: bool = False,
 ) -> ImportedTrial:
-    """Read the sensors of several files of one trial; raises FileRefusedError if the only file is refused."""
-    tables, unread = read_each(
-        files, lambda path: [(table.called, sensors_of_table(table, rate_hz)) for table in read(path)]
-    )
+    """Read the sensors of several files of one trial; raises FileRefusedError if the only file is refused.
+
+    `may_be_halves`: accelerometer and gyroscope of one sensor may be in two files.
+    """
+
+    of_tables: list[UnreadFile] = []
+
+    def read_one(path: Path) -> list[tuple[str, list[ImportedSensor], list[Half]]]:
+        found = []
+        for table in read(path):
+            halves = halves_of_table(table, rate_hz) if may_be_halves else []
+            whole, refused = ([], []) if halves else sensors_of_table(table, rate_hz)
+            of_tables.extend(refused)
+            found.append((table.called, whole, halves))
+        return found
+
+    tables, unread = read_each(files, read_one)
     sensors: list[ImportedSensor] = []
-    for called, found in (one for of_file in tables for one in of_file):
+    for called, found, _ in (one for of_file in tables for one in of_file):
         names = {sensor.name.casefold() for sensor in sensors}
         if any(sensor.name.casefold() in names for sensor in found):  # each table may call its sensor "imu"
             found = [replace(sensor, name=f"{called} {sensor.name}") for sensor in found]
         sensors += found
-    return ImportedTrial(format_name, tuple(sensors), tuple(unread))
+    together, alone = joined([half for of_file in tables for _, _, halves in of_file for half in halves])
+    if alone and not sensors and not together:
+        raise (unread or alone)[0].refusal
+    return ImportedTrial(format_name, (*sensors, *together), (*unread, *of_tables, *alone))
+
+
+def _columns_of(table: NamedTable) -> tuple[SensorColumns, ...]:
+    """A table's sensors, as somebody states them or as their names give them."""
+    if table.stated is not None:
+        return table.stated
+    try:
+        return sensor_columns(list(table.columns), table.units)
+    except FileRefusedError as refusal:
+        raise FileRefusedError.stated_elsewhere(table.where, refusal.what, refusal.remedy, refusal.values) from None
+
+
+def _others(table: NamedTable, found: Sequence[SensorColumns]) -> list[str]:
+    """Columns that were not read."""
+    used = {name for one in found for name in one.names()} | ({table.time} if table.time_s is not None else set())
+    return [name for name in [*table.columns, *table.left_out] if name not in used]
 
 
 def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, others: Sequence[str]) -> ImportedSensor:
@@ -87,14 +145,18 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
             sensor=quoted(name),
         )
     findings = list(table.findings)
-    acc, gyr = _matrix(table, named.acc), _matrix(table, named.gyr)
+    acc, gyr = (_matrix(table, names, lengths) for names in (named.acc, named.gyr))
     is_there: BoolArray = np.isfinite(np.hstack([acc, gyr])).any(axis=1)  # a row of another sensor's is none of its
+    of_units: list[Finding] = []
+    acc_unit, gyr_unit = _acc_unit(table, named, acc, of_units), _gyr_unit(table, named, gyr, of_units)
     stamps = stamps_of(table, named, asked_hz, is_there, findings)
-    acc_unit = _acc_unit(table, named, acc, findings)
-    gyr_unit = _gyr_unit(table, named, gyr, findings)
-    acc, gyr = acc * FORCE_UNITS[acc_unit], gyr * RATE_UNITS[gyr_unit]
+    findings += of_units
     kept = np.flatnonzero(is_there)[stamps.is_new]
-    q = _orientation(_matrix(table, named.quat)[kept], acc[kept]) if named.quat else None
+    acc = acc * FORCE_UNITS[acc_unit]
+    if not gyr_unit and named.acc:
+        gyr_unit = unit_by_gravity(stamps.time_s, acc[kept], gyr[kept], table.where, listed(named.gyr), findings)
+    gyr = gyr * RATE_UNITS[gyr_unit or OPEN]
+    q = _orientation(_matrix(table, named.quat, lengths)[kept], acc[kept]) if named.quat else None
     if named.quat and q is None:
         findings.append(Finding("orientation_left_out", Severity.INFO, "", {"names": listed(named.quat)}))
     understood = {
@@ -113,7 +175,7 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
         gyr_rad_s=gyr[kept],
         acc_m_s2=acc[kept],
         q_earth_from_sensor=q,
-        mag=_matrix(table, named.mag)[kept] if named.mag else None,
+        mag=_matrix(table, named.mag, lengths)[kept] if named.mag else None,
     )
     ids = tuple({name.replace("_", " "), name.replace(" ", "_")} - {name})
     return ImportedSensor(
@@ -149,11 +211,19 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
             middle=f"{middle:.3g}",
             units=reported or ", ".join(FORCE_UNITS),
         )
+    if float(np.linalg.norm(np.nanmean(acc, axis=0))) < LEAST_DOWN * middle:
+        raise FileRefusedError(
+            table.where,
+            "the acceleration {names} points nowhere in the mean, as if gravity had been removed",
+            "Export acceleration in m/s2 with gravity, not free or linear acceleration",
+            names=listed(named.acc),
+        )
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.acc), "unit": fits[0]}))
     return fits[0]
 
 
 def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings: list[Finding]) -> str:
+    """The unit of the rates; empty where neither names nor sizes show it."""
     reported = _reported_unit(table, named.gyr, Quantity.GYR)
     rates = np.abs(gyr[np.isfinite(gyr)])
     largest = float(np.quantile(rates, FEW)) if len(rates) else 0.0
@@ -170,27 +240,22 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
             )
         return reported
     if not len(rates):
-        return "rad/s"
+        return OPEN
     if not MOST_RAD_S < largest < MOST_RAD_S / RATE_UNITS["deg/s"]:
-        raise FileRefusedError(
-            table.where,
-            "it is unclear whether the angular rates {names} are in rad/s or in deg/s",
-            "Name the columns with their unit, such as gyr_x_rad_s or gyr_x_deg_s",
-            names=listed(named.gyr),
-        )
+        return ""
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.gyr), "unit": "deg/s"}))
     return "deg/s"
 
 
 def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:
     """The unit in the names of three columns, or the one given for them; empty where there is none."""
-    units = set()
+    units = {""} if not names else set[str]()
     for name in names:
         stated = table.units.get(name, "")
         meaning = meaning_of(name, stated)
-        units.add(meaning.unit if meaning else "")
+        units.add(unit_of(quantity, stated) or unit_of(quantity, meaning.unit if meaning else ""))
         bracketed = without_brackets(name)[1]
-        for text in (stated, bracketed):
+        for text in (stated or bracketed,):
             if text.strip() and not unit_of(quantity, text):
                 raise FileRefusedError(
                     table.where,
@@ -225,8 +290,10 @@ def _orientation(q: FloatArray, acc: FloatArray) -> FloatArray | None:
     return unit if size > 0.0 and mean[2] > UP * size else None
 
 
-def _matrix(table: NamedTable, names: Sequence[str]) -> FloatArray:
-    """(n, m) values; infinite ones are no measurement and become NaN."""
+def _matrix(table: NamedTable, names: Sequence[str], lengths: Collection[int]) -> FloatArray:
+    """(n, m) values; infinite ones are no measurement and become NaN; (n, 3) NaN where there are no columns."""
+    if not names:
+        return np.full((next(iter(lengths)), len(XYZ)), np.nan)
     matrix = np.column_stack([table.columns[name] for name in names])
     matrix[np.isinf(matrix)] = np.nan
     return matrix

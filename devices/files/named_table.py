@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.findings import Finding
 from core.samples import FloatArray
-from devices.files.column_names import sensor_columns
+from devices.files.column_names import SensorColumns, sensor_columns
 from devices.files.tables import Table
 
 
@@ -25,8 +25,10 @@ class NamedTable:
     units: Mapping[str, str] = field(default_factory=dict)  # of columns whose unit is not in their name
     rate_hz: float | None = None  # samples per second as the file gives it; None where it does not
     time_s: FloatArray | None = None  # (n,) or None: stamps in seconds that the file keeps beside its columns
+    time: str = "time"  # what these stamps are called
     left_out: Sequence[str] = ()  # columns that were not even read as numbers
     findings: Sequence[Finding] = ()  # what its reader noticed, without a place
+    stated: tuple[SensorColumns, ...] | None = None  # its sensors, or halves of them; None: by the columns' names
 
 
 def named_table_of(

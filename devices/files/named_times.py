@@ -9,15 +9,21 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray
-from devices.files.clock_repair import FileClock, repaired
-from devices.files.column_names import SECONDS, SensorColumns, meaning_of
+from devices.files.clock_repair import FileClock, RepairedClock, repaired
+from devices.files.column_names import SECONDS, Quantity, SensorColumns, meaning_of, unit_of
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.straight_times import LATE_S, straight_times
+from devices.files.table_choices import COUNT
 
 LIKELY_HZ = (20.0, 2000.0)  # rates by which a unit of time is found: no two units leave the same steps
 POSSIBLE_HZ = (1.0, 20_000.0)
 WRAPS = tuple(float(1 << bits) for bits in (8, 16, 24, 32))
-MOST_DOUBLED = 0.2  # of the samples: beyond, the stamps are too coarse to go by
+MOST_DOUBLED = 0.2  # of the samples: beyond, samples come in batches that share a stamp
+MOST_COARSE_S = 0.1  # by which stamps of batches may be off
+BATCH_LATE_S = 0.2  # of a recording: packets are not later than that, in a short one
+USUAL_COUNT = 1.2  # counts between samples; a counter of other packets too has 1.5 and more
+LOST_TOGETHER = 0.02  # of the steps: where a fifth is lost by chance, 4 % of the steps are of three and more
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,42 +43,94 @@ def stamps_of(
     reported_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
     if table.time_s is not None:
-        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, "time [s]"
+        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, f"{table.time} [s]"
     elif named.time and len(table.columns[named.time]) == len(is_there):
         values = _unwrapped(table, table.columns[named.time][rows], rows, named.time)
         meaning = meaning_of(named.time, table.units.get(named.time, ""))
-        unit = _time_unit(table, named.time, meaning.unit if meaning else "", values, reported_hz, findings)
-        scale, reported = (
-            (1.0 / (reported_hz or 1.0), named.time) if unit == "samples" else (SECONDS[unit], f"{named.time} [{unit}]")
-        )
-    elif reported_hz is None:
-        raise FileRefusedError(
-            table.where,
-            "the samples in the file have no times",
-            "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
-        )
-    elif named.counter and len(table.columns[named.counter]) == len(is_there):
+        stated = unit_of(Quantity.TIME, table.units.get(named.time, "")) or (meaning.unit if meaning else "")
+        stated = COUNT if table.units.get(named.time) == COUNT else stated
+        unit = _time_unit(table, named.time, stated, values, reported_hz, findings)
+        if unit == COUNT:
+            scale, reported = 1.0 / _required(table, reported_hz), named.time
+        else:
+            scale, reported = SECONDS[unit], f"{named.time} [{unit}]"
+    elif named.counter and reported_hz is not None and len(table.columns[named.counter]) == len(is_there):
         values, scale, reported = (
             _unwrapped(table, table.columns[named.counter][rows], rows, named.counter),
             1.0 / reported_hz,
             f"{named.counter} / {reported_hz:g} Hz",
         )
+        _refuse_other_packets(table, values, named.counter)
     else:
-        values, scale, reported = rows.astype(float), 1.0 / reported_hz, f"{reported_hz:g} Hz"
-        findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": reported_hz}))
-    name = quoted(named.time or named.counter) if table.time_s is None else '"time"'
+        scale = 1.0 / _required(table, reported_hz)
+        values, reported = rows.astype(float), f"{1.0 / scale:g} Hz"
+        findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": 1.0 / scale}))
+    name = quoted(named.time or named.counter) if table.time_s is None else quoted(table.time)
     clock = repaired(values, FileClock(table.where, lambda row: table.place(int(rows[row])), name, scale))
     if clock.doubled > MOST_DOUBLED * len(values):
+        return _spread(table, clock, scale, reported_hz, reported, findings)
+    findings += clock.findings
+    time_s = clock.stamps[clock.is_new] * scale
+    return Stamps(time_s, clock.is_new, _checked_rate(table, time_s, reported_hz), reported)
+
+
+def _spread(
+    table: NamedTable,
+    clock: RepairedClock,
+    scale: float,
+    reported_hz: float | None,
+    reported: str,
+    findings: list[Finding],
+) -> Stamps:
+    """Even times of samples that share their stamps in batches; raises FileRefusedError where stamps are too coarse."""
+    is_there: BoolArray = np.isfinite(clock.stamps)
+    stamp_s = clock.stamps[is_there] * scale
+    length_s = float(stamp_s[-1] - stamp_s[0])
+    straight = None
+    if length_s > 0.0:
+        straight = straight_times(stamp_s, len(stamp_s) / length_s, min(LATE_S, BATCH_LATE_S * length_s))
+    if straight is None or straight.away_s > MOST_COARSE_S:
         raise FileRefusedError(
             table.where,
             "{doubled} of {count} samples have the same time as the sample before",
             "Export the times with more digits",
-            count=len(values),
+            count=len(clock.stamps),
             doubled=clock.doubled,
         )
-    findings += clock.findings
-    time_s = clock.stamps[clock.is_new] * scale
-    return Stamps(time_s, clock.is_new, _checked_rate(table, time_s, reported_hz), reported)
+    numbers = {
+        "count": round(len(stamp_s) / len(np.unique(stamp_s)), 1),
+        "away_ms": round(1e3 * straight.away_s, 1),
+        "loss_ms": round(1e3 * straight.least_loss_s, 1),
+    }
+    findings.append(Finding("stamps_spread", Severity.WARNING, "", numbers))
+    findings += [one for one in clock.findings if one.key != "doubled_stamps"]
+    rate_hz = _checked_rate(table, straight.time_s, reported_hz)
+    return Stamps(straight.time_s, is_there, rate_hz, reported)
+
+
+def _required(table: NamedTable, rate_hz: float | None) -> float:
+    """The rate, without which the samples have no times."""
+    if rate_hz is None:
+        raise FileRefusedError(
+            table.where,
+            "the samples in the file have no times",
+            "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
+        )
+    return rate_hz
+
+
+def _refuse_other_packets(table: NamedTable, counts: FloatArray, name: str) -> None:
+    """Refuse a counter that rises by more than the samples: what is lost and what is another packet look alike."""
+    steps = np.diff(counts)
+    rises = float(steps.mean()) if len(steps) else 1.0
+    if rises > USUAL_COUNT and float(np.mean(steps > 2.0)) < LOST_TOGETHER:
+        raise FileRefusedError(
+            table.where,
+            "{name} rises by {rises} for each sample: it counts other packets too, or samples are lost",
+            "Export the times of the samples; only if no sample was lost, give --time none with --rate",
+            name=quoted(name),
+            rises=f"{rises:.2f}",
+        )
 
 
 def _one_rate(table: NamedTable, asked_hz: float | None) -> float | None:
@@ -133,14 +191,14 @@ def _unwrapped(
 def _time_unit(
     table: NamedTable, name: str, reported: str, values: FloatArray, reported_hz: float | None, findings: list[Finding]
 ) -> str:
-    """A unit of time, or "samples" where samples are counted."""
+    """A unit of time, or COUNT where samples are counted."""
     step = np.diff(values)
     usual = float(np.median(step[step > 0])) if (step > 0).any() else np.nan
     if reported or not np.isfinite(usual):
         return reported or "s"
     if reported_hz is not None:
         fits = [unit for unit, scale in SECONDS.items() if abs(usual * scale * reported_hz - 1.0) < 0.05]
-        fits = fits or (["samples"] if usual == 1.0 else [])
+        fits = fits or ([COUNT] if usual == 1.0 else [])
     else:
         least, most = LIKELY_HZ
         fits = [unit for unit, scale in SECONDS.items() if least <= 1.0 / (usual * scale) <= most]
@@ -154,6 +212,6 @@ def _time_unit(
             name=quoted(name),
             step=f"{usual:.6g}",
         )
-    if fits[0] != "samples":
+    if fits[0] != COUNT:
         findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": name, "unit": fits[0]}))
     return fits[0]

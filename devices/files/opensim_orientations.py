@@ -20,6 +20,8 @@ from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.clock_repair import FileClock, whole_clock
 from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.tables import CutEnd, number_in
+from devices.files.text_files import open_text
 from devices.files.trial import ImportedSensor, ImportedTrial
 
 END_OF_HEAD = b"endheader"
@@ -57,7 +59,8 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
     rows: list[list[float]] = []
     lines: list[int] = []
     has_head, is_simulated = False, False
-    with path.open("rb") as file:
+    cut = CutEnd()
+    with open_text(path) as file:
         for number, raw in enumerate(iter(lambda: file.readline(LONGEST_LINE), b""), 1):
             here = f"{where}, line {number}"
             try:
@@ -74,7 +77,12 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
             elif not names:
                 names = _names(text, here)
             else:
-                rows.append(_row(text, len(names), here))
+                cells = [cell.strip() for cell in (text.split("\t") if "\t" in text else text.split())]
+                if len(cells) < len(names):
+                    cut.note_cut(_of_other_width(len(cells), len(names), here))
+                    continue
+                cut.note_whole()
+                rows.append(_row(cells, len(names), here))
                 lines.append(number)
     if not names:
         raise FileRefusedError(where, "there is no header line after {name}", EXPORT_AGAIN, name="endheader")
@@ -87,7 +95,8 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
         line = lines[int(np.argmax(is_wrong))]
         raise FileRefusedError(f"{where}, line {line}", "the orientation is not a valid rotation", EXPORT_AGAIN)
     stamps_s = clock.stamps[clock.is_new]
-    return OrientationTable(stamps_s - stamps_s[:1], tuple(names[1:]), q[clock.is_new], clock.findings, is_simulated)
+    findings = (*cut.findings(path), *clock.findings)
+    return OrientationTable(stamps_s - stamps_s[:1], tuple(names[1:]), q[clock.is_new], findings, is_simulated)
 
 
 def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
@@ -133,20 +142,23 @@ def _names(text: str, here: str) -> list[str]:
     return names
 
 
-def _row(text: str, columns: int, here: str) -> list[float]:
-    cells = [cell.strip() for cell in (text.split("\t") if "\t" in text else text.split())]
+def _of_other_width(count: int, width: int, here: str) -> FileRefusedError:
+    return FileRefusedError(
+        here,
+        "the line has {count} cells, but the header has {width}",
+        EXPORT_AGAIN,
+        count=count,
+        width=width,
+    )
+
+
+def _row(cells: Sequence[str], columns: int, here: str) -> list[float]:
     if len(cells) != columns:
-        raise FileRefusedError(
-            here,
-            "the line has {count} cells, but the header has {width}",
-            EXPORT_AGAIN,
-            count=len(cells),
-            width=columns,
-        )
+        raise _of_other_width(len(cells), columns, here)
     try:
-        row = [float(cells[0])]
+        row = [number_in(cells[0])]
         for cell in cells[1:]:
-            four = [float(part) for part in cell.split(",")] if cell else [np.nan] * 4
+            four = [float(part) for part in _parts(cell)] if cell else [np.nan] * 4
             if len(four) != 4:
                 raise FileRefusedError(
                     here, "{cell} is not an orientation of four numbers", EXPORT_AGAIN, cell=quoted(cell)
@@ -155,6 +167,12 @@ def _row(text: str, columns: int, here: str) -> list[float]:
     except ValueError as error:
         raise FileRefusedError(here, "a value is not a number ({why})", EXPORT_AGAIN, why=quoted(error)) from error
     return row
+
+
+def _parts(cell: str) -> list[str]:
+    """The four numbers of an orientation; of eight parts two make one, with a decimal comma."""
+    parts = cell.split(",")
+    return [".".join(two) for two in zip(parts[::2], parts[1::2], strict=True)] if len(parts) == 8 else parts
 
 
 def _counter(time_s: FloatArray, rate_hz: float, where: str) -> Numbers:

@@ -13,7 +13,8 @@ from devices.files.column_names import sensor_columns
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable, named_table_of
 from devices.files.refusal import FileRefusedError
-from devices.files.tables import COPY_AGAIN, read_parquet
+from devices.files.table_header import COPY_AGAIN
+from devices.files.tables import read_parquet
 
 SIGNATURE = b"PAR1"
 UNIT_KEYS = (b"unit", b"units")

@@ -23,6 +23,7 @@ from devices.files.own_clocks import from_zero, with_own_clocks
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.shimmer_card import card_recording, is_card, is_synchronised, read_card
 from devices.files.tables import Table, header_of, read_csv
+from devices.files.text_files import as_utf8, open_text
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
 FORMAT = "shimmer"
@@ -76,7 +77,7 @@ def shimmer_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     of_cards: dict[tuple[Path, str], list[Path]] = {}
     for path in files:
         with path.open("rb") as file:
-            is_binary = b"\0" in file.read(MOST_HEAD)
+            is_binary = b"\0" in as_utf8(file.read(MOST_HEAD))
         (of_cards.setdefault((path.parent, card_recording(path)), []) if is_binary else tables).append(path)
     parts_of = {path: [path] for path in tables} | {parts[0]: parts for parts in of_cards.values()}
     read, refused = read_each(
@@ -106,12 +107,12 @@ def _names(lines: Sequence[str]) -> list[str]:
 
 def _sensors(path: Path) -> list[ImportedSensor]:
     where = path.name
-    with path.open("rb") as file:
+    with open_text(path) as file:
         is_calibrated = CALIBRATED.encode() in file.read(MOST_HEAD)
     if not is_calibrated:
         raise FileRefusedError(where, NOT_CALIBRATED, EXPORT_AGAIN)
     before, names = header_of(path, where, delimiters=DELIMITERS, header_names=CALIBRATED)
-    with path.open("rb") as file:
+    with open_text(path) as file:
         line = next(islice(file, len(before) + 1, None), b"").decode("utf-8", "replace").rstrip("\r\n")
     reported = [one.strip() for one in line.split(max(DELIMITERS, key=line.count))]
     units = dict(zip(names, reported, strict=False))  # a delimiter more or less follows the last
@@ -156,7 +157,7 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
     rate_hz, clock_name = usual_rate(block.time_s), CLOCK if is_synced else ""
     info = SensorInfo(serial=name, model="Shimmer3", rate_hz=rate_hz, clock=clock_name)
     ids = (name.rpartition("_")[2],)
-    return ImportedSensor(name, ids, str(path), block, info, clock.findings)
+    return ImportedSensor(name, ids, str(path), block, info, (*table.findings, *clock.findings))
 
 
 def _scale(path: Path, units: Mapping[str, str], names: Sequence[str], quantity: Quantity) -> float:

@@ -12,7 +12,8 @@ from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock
 from devices.files.refusal import FileRefusedError
-from devices.files.tables import CORRECT_IT, Table, read_csv, read_parquet
+from devices.files.table_header import CORRECT_IT
+from devices.files.tables import Table, read_csv, read_parquet
 
 TIME = "time_s"
 ACC = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
@@ -29,7 +30,11 @@ def read_site(
 ) -> tuple[ImuBlock, tuple[Finding, ...]]:
     """Read one site's samples, dropping repeated stamps with a finding; raises FileRefusedError."""
     try:
-        table = read_parquet(path, where, NUMERIC) if path.suffix == ".parquet" else read_csv(path, where, NUMERIC)
+        table = (
+            read_parquet(path, where, NUMERIC)
+            if path.suffix == ".parquet"
+            else read_csv(path, where, NUMERIC, is_ours=True)
+        )
     except OSError as error:
         why = error.strerror
         raise FileRefusedError(where, "the file cannot be read ({why})", "Check the permissions", why=why) from error

@@ -17,6 +17,7 @@ SEGMENTS = {
     Segment.SHANK: {"shank", "tibia", "lowerleg", "lowleg", "unterschenkel", "calf"},
     Segment.FOOT: {"foot", "calcn", "calcaneus", "fuss", "fuß", "shoe"},
 }
+OF_PELVIS = {"pelvis", "sacrum", "becken", "kreuzbein"}
 OF_LEGS = {"upper", "lower", "leg", "imu", "sensor"}
 OTHER = {
     "arm",
@@ -36,10 +37,12 @@ OTHER = {
 
 
 def site_of_name(name: str) -> Site | None:
-    """Give the site of a name such as "Left Upper Leg", "femur_l" or "rightFoot"; None for none or two."""
+    """Give the site of a name such as "Left Upper Leg", "femur_l" or "pelvis_imu"; None for none or two."""
     words = _words(name)
     sides = {side for side, known in SIDES.items() if known & set(words)}
     segments = {segment for segment, known in SEGMENTS.items() if known & set(words)}
+    if OF_PELVIS & set(words) and not segments and not (OTHER - OF_PELVIS) & set(words):
+        return Site.PELVIS
     if len(sides) != 1 or len(segments) != 1 or OTHER & set(words):
         return None
     (side,), (segment,) = sides, segments
@@ -50,7 +53,8 @@ def without_site(name: str) -> str:
     """Strip the site, and a sensor number of 8 or 12 hex digits at the end, from a name."""
     parts = re.split(r"[_\s-]+", name)
     if site_of_name(name) is not None:
-        of_site = {word for group in (SIDES, SEGMENTS) for words in group.values() for word in words} | OF_LEGS
+        of_site = {word for group in (SIDES, SEGMENTS) for words in group.values() for word in words}
+        of_site |= OF_LEGS | OF_PELVIS
         parts = [part for part in parts if not set(_single_words(part)) <= of_site]
     if parts and re.fullmatch(r"[0-9A-Fa-f]{8}|[0-9A-Fa-f]{12}", parts[-1]):
         parts = parts[:-1]

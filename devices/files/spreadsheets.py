@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.tables import COPY_AGAIN, CORRECT_IT, Table
+from devices.files.table_header import COPY_AGAIN, CORRECT_IT
+from devices.files.tables import Table
 
 ZIP = b"PK\x03\x04"
 WORDS_OF_SHEETS = ("xl/sharedStrings.xml", "xl/worksheets/sheet1.xml")  # where an Excel file keeps what cells say

@@ -1,28 +1,41 @@
 """Tables read from files: their columns, and which line is at fault.
 
-CSV and Parquet, read by Arrow. When Arrow cannot read a text, a slow pass over its lines finds the one to name.
+CSV and Parquet, read by Arrow. When Arrow cannot read a text, a slow pass over its lines finds the one to name, or
+those that may be left out: a header that is repeated, and incomplete rows at the end.
 """
 
 import csv
+import io
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings import Finding, Severity
 from core.samples import FloatArray
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.table_header import (
+    COPY_AGAIN,
+    CORRECT_IT,
+    UNNAMED,
+    Header,
+    Open,
+    cells_of,
+    read_header,
+    refuse_twice,
+)
+from devices.files.text_files import UTF_8, open_text
 
 NUMBER = re.compile(r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf(inity)?)?\s*", re.IGNORECASE | re.ASCII)
-DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
-LONGEST_HEADER = 100_000  # bytes; a line without end is no header
+NO_VALUE = ("na", "n/a", "#n/a", "nan", "null", "none", "-", "--")  # what programs write for nothing
 EMPTY_CELLS = [" " * n for n in range(9)]  # Arrow compares whole cells, and a blank or two is still nothing
-UNNAMED = "column"  # a column without a name is called by its place: "column 9"
-COPY_AGAIN = "Copy the file again from where it was recorded"
-CORRECT_IT = "Correct the file or export it again"
+EMPTY_CELLS += [blank + cell for word in NO_VALUE for cell in (word, word.upper(), word.title()) for blank in ("", " ")]
+MOST_CUT = 8  # incomplete rows at the end; more, and the file is another
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +43,7 @@ class Table:
     """One file's columns, all of one length: `numbers` those that were asked for as numbers, `texts` all others.
 
     `place` gives where a row of the table is in the file ("line 12"). `is_open` is true for a text whose last line
-    has no end: its last cell may have been cut.
+    has no end: its last cell may have been cut. `cut_rows`: incomplete rows at the end that were left out.
     """
 
     numbers: Mapping[str, FloatArray]
@@ -38,6 +51,7 @@ class Table:
     rows: int
     place: Callable[[int], str]
     is_open: bool = False
+    cut_rows: int = 0
 
     def matrix(self, names: Collection[str]) -> FloatArray:
         """(rows, len(names)); infinite values are no measurement and become NaN."""
@@ -45,30 +59,49 @@ class Table:
         matrix[np.isinf(matrix)] = np.nan
         return matrix
 
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is odd about its rows, without a place."""
+        return _of_cut(self.cut_rows)
 
-@dataclass(frozen=True, slots=True)
-class TextShape:
-    """How a text of another program is laid out, beyond its header.
 
-    `units`: what a line of units below the header gives for each column; empty where there is no such line.
+@dataclass(slots=True)
+class CutEnd:
+    """Incomplete rows: left out at the end of a file, and refused where a whole row follows.
+
+    A file whose last line has no end was cut off while it was written or copied, and is refused as well.
     """
 
-    names: tuple[str, ...]  # of the columns, in their order
-    units: Mapping[str, str]
-    decimal: str  # the decimal point: "," in files of some countries
-    first: tuple[str, ...]  # the cells of the first row of values; empty where there is none
+    refusals: list[FileRefusedError] = field(default_factory=list)
+
+    def note_cut(self, refusal: FileRefusedError) -> None:
+        """Keep an incomplete row in mind, which is to be refused so."""
+        self.refusals.append(refusal)
+
+    def note_whole(self) -> None:
+        """A whole row came; raises FileRefusedError where the one before was not."""
+        if self.refusals:
+            raise self.refusals[0]
+
+    def count(self, *, ends_whole: bool, most: int = MOST_CUT) -> int:
+        """How many rows are left out; raises FileRefusedError where they are no end of a recording."""
+        if self.refusals and (len(self.refusals) > most or not ends_whole):
+            raise self.refusals[0]
+        return len(self.refusals)
+
+    def findings(self, path: Path) -> tuple[Finding, ...]:
+        """What was left out of this file, without a place; raises FileRefusedError as `count`."""
+        return _of_cut(self.count(ends_whole=ends_whole(path)))
 
 
-def shape_of(path: Path, where: str, is_unit: Callable[[str], bool], *, comment: str, delimiters: str) -> TextShape:
-    """How a text is laid out; raises as `header_of` does."""
-    with path.open("rb") as file:
-        names, delimiter, _ = _read_header(file, where, comment, delimiters)
-        units = _cells_after(file, delimiter)
-        has_units = len(units) == len(names) and any(map(is_unit, units)) and not any(map(_is_value, units))
-        first = _cells_after(file, delimiter) if has_units else units
-    has_comma = delimiter != "," and any(DECIMAL_COMMA.fullmatch(cell) for cell in first)
-    reported = {name: unit for name, unit in zip(names, units, strict=True) if unit} if has_units else {}
-    return TextShape(tuple(names), reported, "," if has_comma else ".", first)
+def _of_cut(count: int) -> tuple[Finding, ...]:
+    return (Finding("rows_cut_short", Severity.WARNING, "", {"count": count}),) if count else ()
+
+
+def ends_whole(path: Path) -> bool:
+    """Whether the last line of a text has an end."""
+    with open_text(path) as file:
+        return not _is_open(file, 0)
 
 
 def read_csv(
@@ -79,31 +112,51 @@ def read_csv(
     comment: str | None = None,  # lines that begin with it, before the header, are passed over
     delimiters: str = ",",
     keep_others: bool = True,  # as the texts that they are
-    has_units: bool = False,  # in the line after the header, see `shape_of`
-    decimal: str = ".",
+    has_units: bool = False,  # in the line after the header
     header_names: str = "",
+    is_ours: bool = False,  # of a session folder: UTF-8 with points, and every row is whole
 ) -> Table:
     """Read a text with one header line; `numeric` columns are NaN where empty; raises FileRefusedError.
     The delimiter is the one that divides the header most; the header is the first line with `header_names`.
     """
-    with path.open("rb") as file:
-        names, delimiter, header_line = _read_header(file, where, comment, delimiters, header_names)
-        header_line += _skip_line(file) if has_units else 0
-        start = file.tell()
-        required = [name for name in names if keep_others or name in numeric]
-        arrow = _read_body(file, names, required, numeric, delimiter, decimal)
-        is_open = _is_open(file, start)
-        if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
-            _refuse_line(path, where, start, header_line, names, numeric, delimiter, decimal)
-            if next(_lines(path, start, 0), None) is not None:
-                raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
-            arrow = None
+    opened = partial(open_text, path, UTF_8 if is_ours else "")
+    with opened() as file:
+        header = read_header(
+            file, where, comment=comment, delimiters=delimiters, header_names=header_names, has_units=has_units
+        )
+    if is_ours:
+        header = replace(header, decimal=".")
+    kept = set(header.names) - set(numeric) if keep_others else set()
+    return read_rows(opened, where, header, numeric, kept=kept, is_ours=is_ours)
 
-    unnamed = {f"{UNNAMED} {i}" for i in range(1, len(names) + 1)}
+
+def read_rows(
+    opened: Open, where: str, header: Header, numeric: Collection[str], *, kept: Collection[str], is_ours: bool = False
+) -> Table:
+    """Read the rows below a header as `read_csv` does; of other columns those that are to be `kept` as texts."""
+    required = [name for name in header.names if name in kept or name in numeric]
+    dropped = _Dropped(frozenset(), 0)
+    with opened() as file:
+        file.seek(header.start)
+        arrow = _read_body(file, header, required, numeric)
+        is_open = _is_open(file, header.start)
+    if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
+        dropped = _dropped_lines(opened, where, header, numeric, is_ours=is_ours)
+        lines = [line for _, line in _lines(opened, header, dropped.lines)]
+        if not lines:
+            arrow = None
+        elif not dropped.lines:
+            raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
+        else:
+            arrow = _read_body(io.BytesIO(b"\n".join([*lines, b""])), header, required, numeric)
+            if isinstance(arrow, Exception):
+                raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
+
+    unnamed = {f"{UNNAMED} {i}" for i in range(1, len(header.names) + 1)}
     columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(required)}
 
     def place(row: int) -> str:
-        for i, (line, _) in enumerate(_lines(path, start, header_line)):
+        for i, (line, _) in enumerate(_lines(opened, header, dropped.lines)):
             if i == row:
                 return f"line {line}"
         return f"row {row + 1}"  # a file whose lines end in ways of their own
@@ -112,7 +165,9 @@ def read_csv(
     texts = {n: _as_text(c.to_pylist() if c is not None else []) for n, c in columns.items() if n not in numeric}
     for name in [n for n in texts if n in unnamed and not np.any(texts[n] != "")]:
         del texts[name]  # delimiters at the end of every line make columns of nothing
-    return Table(numbers, texts, 0 if arrow is None else arrow.num_rows, place, is_open)
+    rows = 0 if arrow is None else arrow.num_rows
+    table = Table(numbers, texts, rows, place, is_open, dropped.cut)
+    return table if is_ours else _without_empty_end(table)
 
 
 def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
@@ -123,7 +178,7 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
         with path.open("rb") as file:
             arrow = pyarrow.parquet.ParquetFile(file).read()
         names = [name.strip() for name in arrow.column_names]
-        _refuse_twice(names, where, "header")
+        refuse_twice(names, where, "header")
         numbers, texts = {}, {}
         for name, column in zip(names, arrow.columns, strict=True):
             is_number = pyarrow.types.is_integer(column.type) or pyarrow.types.is_floating(column.type)
@@ -146,98 +201,41 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
     return Table(numbers, texts, arrow.num_rows, lambda row: f"row {row + 1}")
 
 
+def _without_empty_end(table: Table) -> Table:
+    """Leave out rows at the end that hold no number: spreadsheets write their delimiters."""
+    filled = [np.flatnonzero(np.isfinite(column)) for column in table.numbers.values()]
+    rows = max((int(found[-1]) + 1 for found in filled if len(found)), default=0)
+    if not filled or rows == table.rows:
+        return table
+    numbers = {name: column[:rows] for name, column in table.numbers.items()}
+    return replace(table, numbers=numbers, texts={name: c[:rows] for name, c in table.texts.items()}, rows=rows)
+
+
 def header_of(
     path: Path, where: str, *, comment: str | None = None, delimiters: str, header_names: str = ""
 ) -> tuple[list[str], list[str]]:
     """Give the lines before the header, less comment marks, and the columns' names; raises FileRefusedError."""
-    with path.open("rb") as file:
-        names, _, header_line = _read_header(file, where, comment, delimiters, header_names)
-        file.seek(0)
-        before = [file.readline().decode("utf-8-sig", "replace").strip() for _ in range(header_line - 1)]
-    return [line.removeprefix(comment or "").strip() for line in before], names
+    with open_text(path) as file:
+        header = read_header(file, where, comment=comment, delimiters=delimiters, header_names=header_names)
+    return [line.removeprefix(comment or "").strip() for line in header.before], list(header.names)
 
 
-def _read_header(
-    file: BinaryIO, where: str, comment: str | None, delimiters: str, header_names: str = ""
-) -> tuple[list[str], str, int]:
-    """Names, delimiter and number of the header's line; leaves `file` at the line after it."""
-    number = 0
-    while raw := file.readline(LONGEST_HEADER):
-        number += 1
-        if header_names.encode() not in raw:
-            continue
-        try:
-            text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip(" \r\n")
-        except UnicodeDecodeError as error:
-            raise FileRefusedError(f"{where}, line {number}", "the file is not UTF-8 text", CORRECT_IT) from error
-        if "\r" in text:
-            raise FileRefusedError(
-                f"{where}, line {number}", "the line contains a line break (carriage return)", CORRECT_IT
-            )
-        if "\0" in text or len(raw) == LONGEST_HEADER:
-            raise FileRefusedError(f"{where}, line {number}", "the file is not a table but binary data", CORRECT_IT)
-        if not text or (comment is not None and text.startswith(comment)):
-            continue
-        delimiter = max(delimiters, key=text.count)
-        cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=delimiter != " "))
-        names = [name.strip() or f"{UNNAMED} {i}" for i, name in enumerate(cells, 1)]
-        _refuse_twice(names, where, f"line {number}")
-        return names, delimiter, number
-    raise FileRefusedError(where, "the file has no header line", COPY_AGAIN)
-
-
-def _cells_after(file: BinaryIO, delimiter: str) -> tuple[str, ...]:
-    """The cells of the next line that is not empty; none at the end, and none of a line that is no text."""
-    while raw := file.readline(LONGEST_HEADER):
-        if raw.strip():
-            try:
-                return tuple(
-                    cell.strip() for cell in next(csv.reader([raw.decode().strip("\r\n")], delimiter=delimiter))
-                )
-            except (UnicodeDecodeError, csv.Error, StopIteration):
-                return ()
-    return ()
-
-
-def _skip_line(file: BinaryIO) -> int:
-    """Pass over the next line that is not empty; how many lines that were."""
-    lines = 0
-    while raw := file.readline(LONGEST_HEADER):
-        lines += 1
-        if raw.strip():
-            break
-    return lines
-
-
-def _is_value(cell: str) -> bool:
-    return bool(cell.strip()) and NUMBER.fullmatch(cell) is not None
-
-
-def _refuse_twice(names: list[str], where: str, place: str) -> None:
-    for name in names:
-        if names.count(name) > 1:
-            here = f"{where}, {place}"
-            raise FileRefusedError(here, "column {name} appears twice", CORRECT_IT, name=quoted(name))
-
-
-def _read_body(
-    file: BinaryIO, names: list[str], required: list[str], numeric: Collection[str], delimiter: str, decimal: str
-) -> Any:
+def _read_body(file: BinaryIO, header: Header, required: list[str], numeric: Collection[str]) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
     import pyarrow.csv  # as above
 
-    types = {name: pyarrow.float64() if name in numeric else pyarrow.string() for name in names}
+    types = {name: pyarrow.float64() if name in numeric else pyarrow.string() for name in header.names}
     try:
         return pyarrow.csv.read_csv(
             file,
-            read_options=pyarrow.csv.ReadOptions(column_names=names),
-            parse_options=pyarrow.csv.ParseOptions(delimiter=delimiter),
+            read_options=pyarrow.csv.ReadOptions(column_names=list(header.names)),
+            parse_options=pyarrow.csv.ParseOptions(delimiter=header.delimiter),
             convert_options=pyarrow.csv.ConvertOptions(
                 column_types=types,
                 include_columns=required,
                 null_values=EMPTY_CELLS,
                 strings_can_be_null=False,
-                decimal_point=decimal,
+                decimal_point=header.decimal,
             ),
         )
     except pyarrow.ArrowMemoryError:
@@ -262,27 +260,28 @@ def _is_open(file: BinaryIO, start: int) -> bool:
     return file.read(1) not in (b"\n", b"\r")
 
 
-def _lines(path: Path, start: int, header_line: int) -> Iterator[tuple[int, bytes]]:
-    """Number and bytes of every line after the header that is not empty."""
-    with path.open("rb") as file:
-        file.seek(start)
-        for number, raw in enumerate(file, header_line + 1):
-            if line := raw.rstrip(b"\r\n"):
+def _lines(opened: Open, header: Header, dropped: Collection[int] = ()) -> Iterator[tuple[int, bytes]]:
+    """Number and bytes of every line after the header that is neither empty nor dropped."""
+    with opened() as file:
+        file.seek(header.start)
+        for number, raw in enumerate(file, header.line + 1):
+            if (line := raw.rstrip(b"\r\n")) and number not in dropped:
                 yield number, line
 
 
-def _refuse_line(
-    path: Path,
-    where: str,
-    start: int,
-    header_line: int,
-    names: list[str],
-    numeric: Collection[str],
-    delimiter: str,
-    decimal: str,
-) -> None:
-    """Raise for the first line that cannot be read; return when there is none."""
-    for number, line in _lines(path, start, header_line):
+@dataclass(frozen=True, slots=True)
+class _Dropped:
+    """Numbers of lines that are no rows, and how many of them are incomplete."""
+
+    lines: frozenset[int]
+    cut: int
+
+
+def _dropped_lines(opened: Open, where: str, header: Header, numeric: Collection[str], *, is_ours: bool) -> _Dropped:
+    """Find the lines that can be left out; raises FileRefusedError for the first that cannot be read."""
+    dropped: set[int] = set()
+    cut, end = set[int](), CutEnd()
+    for number, line in _lines(opened, header):
         here = f"{where}, line {number}"
         try:
             text = line.decode()
@@ -291,30 +290,59 @@ def _refuse_line(
         if text.count('"') % 2:
             raise FileRefusedError(here, "a quotation mark is not closed", CORRECT_IT)
         try:
-            cells = next(csv.reader([text], delimiter=delimiter))
+            cells = cells_of(text, header.delimiter)
         except csv.Error as error:
             raise FileRefusedError(here, "the line cannot be read ({why})", COPY_AGAIN, why=error) from error
-        if len(cells) < len(names):
-            raise FileRefusedError(
+        if len(cells) < len(header.names):
+            refusal = FileRefusedError(
                 here,
                 "the line ends after {count} of {whole} columns; the file may have been cut off",
                 COPY_AGAIN,
                 count=len(cells),
-                whole=len(names),
+                whole=len(header.names),
             )
-        if len(cells) > len(names):
+            end.note_cut(refusal)
+            cut.add(number)
+            continue
+        end.note_whole()
+        if not is_ours and [cell.strip() for cell in cells[: len(header.names)]] == list(header.names):
+            dropped.add(number)  # each start of a recording writes it again
+        else:
+            _refuse_cells(cells, here, header, numeric)
+    with opened() as file:
+        is_whole = not _is_open(file, 0)
+    return _Dropped(frozenset(dropped | cut), end.count(ends_whole=is_whole, most=0 if is_ours else MOST_CUT))
+
+
+def _refuse_cells(cells: list[str], here: str, header: Header, numeric: Collection[str]) -> None:
+    if len(cells) > len(header.names):
+        raise FileRefusedError(
+            here,
+            "the line has {count} columns, but the header has {whole}",
+            CORRECT_IT,
+            count=len(cells),
+            whole=len(header.names),
+        )
+    for name, cell in zip(header.names, cells, strict=True):
+        number = cell if header.decimal == "." else cell.replace(".", "?").replace(header.decimal, ".")
+        if name in numeric and not NUMBER.fullmatch(number) and cell.strip().lower() not in NO_VALUE:
             raise FileRefusedError(
-                here,
-                "the line has {count} columns, but the header has {whole}",
-                CORRECT_IT,
-                count=len(cells),
-                whole=len(names),
+                here, "{cell} in column {name} is not a number", CORRECT_IT, cell=quoted(cell), name=name
             )
-        for name, cell in zip(names, cells, strict=True):
-            if name in numeric and not NUMBER.fullmatch(cell if decimal == "." else cell.replace(decimal, ".")):
-                raise FileRefusedError(
-                    here, "{cell} in column {name} is not a number", CORRECT_IT, cell=quoted(cell), name=name
-                )
+
+
+def is_value(cell: str) -> bool:
+    """Whether a cell is a number, with a point or a comma."""
+    text = cell.strip()
+    return bool(text) and NUMBER.fullmatch(text.replace(",", ".", 1)) is not None
+
+
+def number_in(cell: str) -> float:
+    """The number in a cell, whose decimal sign is a point or a comma; NaN where it is empty; raises ValueError."""
+    text = cell.strip()
+    if not text or text.lower() in NO_VALUE:
+        return float("nan")
+    return float(text.replace(",", ".") if text.count(",") == 1 and "." not in text else text)
 
 
 def _as_text(values: list[str]) -> NDArray[np.generic]:

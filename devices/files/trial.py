@@ -13,12 +13,14 @@ T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
 BESIDE_INERTIAL = "Quaternion.csv"  # of the x-IMU3's converter, with the orientation
+OF_XIMU, REGISTERS = ("_CalInertialAndMag", "_CalInertialMagnetic"), "_Registers.csv"  # of the first x-IMU
 SIMULATED_MARK = "SIMULATED.txt"  # beside tables that belong to no session folder, which would say it
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
     "movella-dot": "the Movella DOT app",
     "xsens-mti": "an Xsens MTi, as the bytes it sent",
     "ximu3": "x-IMU3, as bytes or converted to CSV",
+    "ximu": "x-IMU, converted to CSV",
     "shimmer": "Shimmer, its card or Consensys",
     "mvnx": "Xsens MVN (MVNX)",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
@@ -37,6 +39,7 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "xsens-mti": "Recorded streams in four number formats, to the last digit of another program's reading.",
     "ximu3": "The maker's own decoder, to the last digit; for the folder of CSV its heads in public programs. No real "
     "file was at hand.",
+    "ximu": "Public files of the maker's own library: packet numbers, units and the register of the rate.",
     "shimmer": "One real recording of a card and Consensys's CSV of it, equal to the last digits; the clock of a "
     "synchronised one to 0.02 ms. No synchronised recording with motion was at hand.",
     "mvnx": "The MVN manual. No real file was at hand.",
@@ -82,7 +85,8 @@ class UnreadFile:
 class ImportedTrial:
     """`format`: one of `formats.FORMATS`. `started`: as the file gives it, empty where it does not.
 
-    `is_simulated`: the files, or the session that they are a part of, say that nobody was measured.
+    `is_simulated`: the files, or the session that they are a part of, say that nobody was measured. `mapped`: the
+    names that a mapping file gives to sensors.
     """
 
     format: str
@@ -90,6 +94,7 @@ class ImportedTrial:
     unread: tuple[UnreadFile, ...] = ()
     started: str = ""
     is_simulated: bool = False
+    mapped: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,10 +108,21 @@ class FilesOfTrial:
 
 @dataclass(frozen=True, slots=True)
 class Gathered:
-    """`refused`: what is none of the formats, and why."""
+    """`refused`: what is none of the formats, and why. `tables`: those of them that are tables all the same."""
 
     trials: tuple[FilesOfTrial, ...]
     refused: tuple[FileRefusedError, ...]
+    tables: tuple[str, ...] = ()
+
+
+def plain_id(sensor: str) -> str:
+    """A sensor's id as it is compared: "_00B42268" is 00B42268."""
+    return sensor.strip().lstrip("_").upper()
+
+
+def registers_beside(path: Path) -> list[Path]:
+    """Where the registers of an x-IMU are beside its samples; none for a file of another name."""
+    return [path.with_name(path.stem.removesuffix(end) + REGISTERS) for end in OF_XIMU if path.stem.endswith(end)]
 
 
 def read_each(

@@ -20,6 +20,7 @@ from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import read_csv
+from devices.files.text_files import as_utf8
 from devices.files.trial import BESIDE_INERTIAL, ImportedSensor, ImportedTrial, read_each
 from devices.stream import decoded
 
@@ -28,6 +29,8 @@ TIME = "Timestamp (us)"
 GYR = tuple(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")
 ACC = tuple(f"Accelerometer {axis} (g)" for axis in "XYZ")
 QUAT = ("W", "X", "Y", "Z")
+DELIMITERS = ",;\t"
+BEGINNING = 400  # bytes
 US_PER_S = 1e6
 LEAST_MESSAGES = 3
 CONVERT_AGAIN = "Convert the .ximu3 file again, or import that file directly"
@@ -39,7 +42,7 @@ def is_ximu3(path: Path, head: bytes) -> bool:
         return path.is_dir() and (path / INERTIAL).is_file()
     first = head.partition(b"\n")[0].decode("utf-8", "replace").strip().lstrip("\ufeff")
     if first.startswith(TIME):
-        return set(first.split(",")) >= {*GYR, *ACC}
+        return any(set(first.split(one)) >= {*GYR, *ACC} for one in DELIMITERS)
     framer = Ximu3Framer()
     framer.feed(head, 0.0)
     received = framer.received
@@ -73,7 +76,7 @@ def _sensor(path: Path) -> ImportedSensor:
 
 def _begins(path: Path) -> str:
     with path.open("rb") as file:
-        return file.read(len(TIME) + 3).decode("utf-8", "replace").lstrip("\ufeff")
+        return as_utf8(file.read(BEGINNING)).decode("utf-8", "replace").lstrip("\ufeff")
 
 
 def _of_bytes(path: Path) -> tuple[ImuBlock, list[Finding]]:
@@ -89,7 +92,7 @@ def _of_bytes(path: Path) -> tuple[ImuBlock, list[Finding]]:
 
 def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
     where = f"{path.parent.name}/{path.name}"
-    table = read_csv(path, where, {TIME, *GYR, *ACC}, keep_others=False)
+    table = read_csv(path, where, {TIME, *GYR, *ACC}, delimiters=DELIMITERS, keep_others=False)
     missing = [name for name in (TIME, *GYR, *ACC) if name not in table.numbers]
     if missing:
         raise FileRefusedError(where, "column {name} is missing", CONVERT_AGAIN, name=missing[0])
@@ -103,14 +106,15 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
         acc_m_s2=table.matrix(ACC)[is_new] * G,
         q_earth_from_sensor=_orientation(path.with_name(BESIDE_INERTIAL), time_s[is_new]),
     )
-    return block, list(clock.findings)
+    return block, [*table.findings, *clock.findings]
 
 
 def _orientation(path: Path, time_s: FloatArray) -> FloatArray | None:
     """(n, 4) at the samples' instants; None where there is none at the same ones."""
     if not len(time_s) or not path.is_file():
         return None
-    table = read_csv(path, f"{path.parent.name}/{path.name}", {TIME, *QUAT}, keep_others=False)
+    where = f"{path.parent.name}/{path.name}"
+    table = read_csv(path, where, {TIME, *QUAT}, delimiters=DELIMITERS, keep_others=False)
     if not set(table.numbers) >= {TIME, *QUAT}:
         return None
     own_s, q = table.numbers[TIME] / US_PER_S, table.matrix(QUAT)

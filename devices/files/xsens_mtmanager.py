@@ -100,7 +100,7 @@ def read_mtmanager(path: Path) -> MtFile:
         gyr_rad_s=table.matrix(GYR)[is_new] if set(GYR) <= set(names) else None,
         q_earth_from_sensor=None if q is None else q[is_new],
         mag=table.matrix(MAG)[is_new] if set(MAG) <= set(names) else None,
-        of_clock=clock.findings,
+        of_clock=(*table.findings, *clock.findings),
         rate_hz=rate_hz,
     )
     _check_units(file)

@@ -11,8 +11,10 @@ reads them, each followed now and then by a good one, which has to be read.
 
 import os
 import random
+import re
 import tempfile
 import time
+import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -146,30 +148,52 @@ def in_tables(folder: Path) -> Iterator[tuple[str, Path]]:
     columns = test_movella_dot.swing(ROWS)
     yield "movella-dot", test_movella_dot.dot(path, "Quat", "Acc", "Gyr", columns=columns)
     test_movella_dot.as_workbook(path, folder / "made.xlsx")
-    yield "movella-dot-xlsx", folder / "made.xlsx"
+    yield "movella-dot-xlsx", without_times(folder / "made.xlsx")
     elements = test_mvnx.elements([swing], "sensorFreeAcceleration", "sensorOrientation")
     yield "mvnx", test_mvnx.mvnx(path, elements, index=range(ROWS), names=["A"])
     yield "apdm", test_apdm.moveo(path)
     still = {"1262": ("A", test_apdm_hdf5.stamps(ROWS), test_apdm_hdf5.still(ROWS))}
-    yield "apdm-hdf5", test_apdm_hdf5.version_5(path, still)
+    yield "apdm-hdf5", test_apdm_hdf5.version_5(path, still, is_packed=True)
     time_s = np.arange(ROWS) / 100.0
-    both = test_csv_tables.named("A_acc_{}", "A_gyr_{}") | test_csv_tables.named("B_acc_{}", "B_gyr_{}")
-    table = {"Time": 1000 * time_s, **{name: values[:ROWS] for name, values in both.items()}}
-    test_csv_tables.write(path, table, ";", ["ms", *["m/s2", "m/s2", "m/s2", "rad/s", "rad/s", "rad/s"] * 2])
-    path.write_text("# exported\n" + path.read_text().replace(".", ","))
-    yield "csv-named", path
+    yield "csv-named", named_csv(path)
     named = {name: values[:ROWS] for name, values in test_parquet_tables.columns("A_").items()}
     yield "parquet-named", test_parquet_tables.written(path, {"time_ms": 10 * np.arange(ROWS), **named})
     sent = test_xdf.SentStream("A", test_xdf.motion()[:ROWS], test_xdf.START_S + time_s)
     yield "xdf", test_xdf.recorded(path, sent)
-    sensors = {
-        name: {"time_s": time_s, "acc_m_s2": swing.acc_m_s2, "gyr_rad_s": swing.gyr_rad_s} for name in ("A", "B")
-    }
-    yield "matlab", test_matlab_tables.written(path, sensors)
-    yield "matlab-7.3", test_matlab_tables.written_7_3(path, sensors)
+    sensors = {name: {"time_s": time_s, "acc": swing.acc_m_s2, "gyr": swing.gyr_rad_s} for name in ("A", "B")}
+    variables = {"units": {"acc": "m/s^2", "gyr": "rad/s"}, **sensors}
+    test_matlab_tables.written(path, variables)
+    path.write_bytes(b"MATLAB 5.0 MAT-file".ljust(116) + path.read_bytes()[116:])  # else with the time of now
+    yield "matlab", path
+    yield "matlab-7.3", test_matlab_tables.written_7_3(path, variables)
     yield "opensim", test_opensim_orientations.sto(path, swing, swing)
     yield "shimmer", test_shimmer_tables.written(path, count=ROWS)
     yield "ximu3", test_ximu3_files.converted(folder, count=ROWS) / "Inertial.csv"
+
+
+def named_csv(path: Path) -> Path:
+    """Two sensors with orientations, in g and deg/s, a line of units and decimal commas."""
+    time_s = np.arange(ROWS) / 100.0
+    table, units = {"Time": 1000 * time_s}, ["ms"]
+    for sensor in "AB":
+        motion = test_csv_tables.named(f"{sensor}_acc_{{}}", f"{sensor}_gyr_{{}}", test_csv_tables.G, np.pi / 180)
+        table |= {name: values[:ROWS] for name, values in motion.items()}
+        table |= {f"{sensor}_q{k}": np.full(ROWS, float(k == 0)) for k in range(4)}
+        units += [*["g"] * 3, *["deg/s"] * 3, *[""] * 4]
+    test_csv_tables.write(path, table, ";", units)
+    path.write_text("# exported\n" + path.read_text().replace(".", ","))
+    return path
+
+
+def without_times(path: Path) -> Path:
+    """An Excel file whose bytes are the same whenever it is written."""
+    with zipfile.ZipFile(path) as archive:
+        contents = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in contents.items():
+            dated = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", b"2026-01-01T00:00:00Z", content)
+            archive.writestr(zipfile.ZipInfo(name), dated, zipfile.ZIP_DEFLATED)
+    return path
 
 
 def in_streams(path: Path) -> Iterator[tuple[str, bytes]]:

@@ -1,7 +1,7 @@
 """What comes in: files of other programs and session folders are read, confirmed, and put into the library."""
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -71,6 +71,7 @@ class Importing(LongWork):
         self._shown: _Found | None = None
         self._number = self._count = 0
         self._again: tuple[Path, ...] = ()
+        self._placing: SessionDraft | None = None
         self._is_importing = False
         self.page = ImportPage()
         self.page.code.line_edit.returnPressed.connect(self.take_in)
@@ -114,11 +115,12 @@ class Importing(LongWork):
         if shown is None or not code or (self._is_draft and not self._is_draft_ready):
             return
         kinds, sites, day = self.page.draft.kinds, self.page.draft.sites, self.page.day or ""
+        is_one_receiver = self.page.draft.is_one_receiver
 
         def work(opened: "OpenedLibrary", report: Report) -> "Imported":
             session = shown.session
             if shown.draft is not None:
-                session = session_of(shown.draft, kinds, sites, day)
+                session = session_of(shown.draft, kinds, sites, day, is_one_receiver=is_one_receiver)
             assert session is not None  # it is one or the other
             return import_session(opened, session, report, code)
 
@@ -203,15 +205,31 @@ class Importing(LongWork):
         elif shown.draft is not None:
             program = program_name(shown.draft.recordings[0].trial.format)
             self.page.show_draft(where, program, shown.draft)
+            if self.page.draft.can_be_placed:
+                self._place(self._on_proposed, self._on_not_proposed)
         self.asked.emit()
 
     def _on_placing_requested(self) -> None:
+        self._place(self._on_placed, self._on_placing_refused)
+
+    def _place(self, on_placed: "Callable[[Chains | None], None]", on_refused: Callable[[str, str], None]) -> None:
+        """Look in the motion for where the sensors of the draft that is shown were worn."""
         draft, worn = self._shown.draft if self._shown is not None else None, self.page.draft.worn
 
         def work(_opened: "OpenedLibrary") -> "Chains | None":
             return chains_of_motion(draft, worn) if draft is not None else None
 
-        self._controller.run(work, self._on_placed, self._on_placing_refused, self)
+        self._placing = draft
+        self._controller.run(work, on_placed, on_refused, self)
+
+    def _on_proposed(self, chains: "Chains | None") -> None:
+        """Propose positions that nobody asked for: only certain ones, of the draft that is still shown."""
+        is_shown = self._shown is not None and self._shown.draft is self._placing
+        if chains is not None and chains.is_certain and is_shown and self.page.draft.can_be_placed:
+            self.page.draft.show_chains(chains, takes_focus=False)
+
+    def _on_not_proposed(self, _what: str, _remedy: str) -> None:
+        """Nobody asked: the positions stay open."""
 
     def _on_placed(self, chains: "Chains | None") -> None:
         if chains is None:
@@ -219,10 +237,10 @@ class Importing(LongWork):
                 tr("Sensor positions could not be detected."),
                 tr("Use a recording in which all sensors move, or enter the positions."),
             )
-        elif not self.page.draft.show_chains(chains):
+        elif not self.page.draft.show_chains(chains, takes_focus=True):
             self.reported.emit(
                 tr("The movement does not fit the entered sensor positions."),
-                tr("Two or four sensors on thighs and shanks are needed. Check the sensor positions."),
+                tr("Two to seven sensors on legs and pelvis are needed. Check the sensor positions."),
             )
 
     def _on_placing_refused(self, what: str, remedy: str) -> None:

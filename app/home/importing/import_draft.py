@@ -25,8 +25,10 @@ from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.lay_out import lay_out
 from app.widgets.small_curve import SmallCurve
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.toggle import Toggle
 from app.wording.translation import joined, tr, tr_n
-from core.body import LEG_SITES, Side, Site
+from core.body import Side, Site
+from core.placement.chains import USUAL_SITES
 from core.session import RecordingKind
 
 if TYPE_CHECKING:
@@ -56,6 +58,7 @@ class DraftCards(QWidget):
         self.is_left = Button(tr("Left leg"), ButtonKind.SECONDARY, height=40)
         self.is_right = Button(tr("Right leg"), ButtonKind.SECONDARY, height=40)
         self.trouble = Text(tone="ink2", wraps=True)
+        self.one_receiver = Toggle(tr("The sensors shared one receiver"), "", is_on=False)
         self._build(of_code)
 
     @property
@@ -76,10 +79,21 @@ class DraftCards(QWidget):
         return [row.sensor.key for row in self._sensors if row.site.currentData() != ELSEWHERE]
 
     @property
+    def is_one_receiver(self) -> bool:
+        """Whether somebody states that all sensors shared the clock of one receiver."""
+        return not self.one_receiver.isHidden() and self.one_receiver.isChecked()
+
+    @property
+    def can_be_placed(self) -> bool:
+        """Whether the motion may show positions that are open."""
+        is_open = any(row.site.currentData() == OPEN for row in self._sensors)
+        return is_open and len(self.worn) in USUAL_SITES
+
+    @property
     def what_is_wrong(self) -> str:
         """Why this cannot be imported yet; empty where it can."""
         placed = [site for site in self.sites.values() if site is not None]
-        twice = [site for site in LEG_SITES if placed.count(site) > 1]
+        twice = [site for site in Site if placed.count(site) > 1]
         if twice:
             return tr("{site} is assigned twice.").format(site=tr(SITE_WORDS[twice[0]]))
         if not placed:
@@ -91,7 +105,8 @@ class DraftCards(QWidget):
     @property
     def tab_order(self) -> list[QWidget]:
         kinds: list[QWidget] = [row.kind for row in self._recordings]
-        return [*kinds, *(row.site for row in self._sensors), self.place, self.is_left, self.is_right]
+        sites = [row.site for row in self._sensors]
+        return [*kinds, *sites, self.place, self.is_left, self.is_right, self.one_receiver]
 
     def show_folder(self) -> None:
         """Show nothing but the code: what a session folder states of its recordings and sensors holds."""
@@ -117,11 +132,13 @@ class DraftCards(QWidget):
             row.kind.currentIndexChanged.connect(self._on_changed)
         for sensor in self._sensors:
             sensor.site.currentIndexChanged.connect(self._on_changed)
+        self.one_receiver.show_on(False)
+        self.one_receiver.setVisible(draft.is_clock_open)
         for card in (self._of_recordings, self._of_sensors):
             hear_as_laid_out(card)
         self._on_changed()
 
-    def show_chains(self, chains: "Chains") -> bool:
+    def show_chains(self, chains: "Chains", *, takes_focus: bool) -> bool:
         """Take the legs found from motion and ask which is left unless sites show it; False: sites contradict."""
         stated = {key: site for key, site in self.sites.items() if site is not None}
         fitting = [side for side in Side if all(chains.sites(side).get(key) is site for key, site in stated.items())]
@@ -132,14 +149,16 @@ class DraftCards(QWidget):
             self._on_side(fitting[0])
         else:
             self._show_question()
-            self.is_left.setFocus()
+            if takes_focus:
+                self.is_left.setFocus()
         return True
 
     def _build(self, of_code: QWidget) -> None:
         lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, 1)
         self._sensor_rows.setColumnStretch(0, 1)
         buttons = lay_out(QHBoxLayout(), self.place, self.is_left, self.is_right, 1)
-        of_sensors = (self._sensors_title, self._sensor_rows, self.trouble, self._question, buttons)
+        receiver = lay_out(QHBoxLayout(), self.one_receiver, 1)
+        of_sensors = (self._sensors_title, self._sensor_rows, self.trouble, self._question, buttons, receiver)
         lay_out(self._of_sensors.column, *of_sensors, 1)
         self._left = lay_out(QVBoxLayout(), self._of_recordings, of_code, 1)
         self._row = lay_out(
@@ -165,9 +184,8 @@ class DraftCards(QWidget):
         self.changed.emit()
 
     def _show_question(self) -> None:
-        is_open = any(row.site.currentData() == OPEN for row in self._sensors)
         is_asking = self._chains is not None
-        self.place.setVisible(is_open and not is_asking and 2 <= len(self.worn) <= 6)
+        self.place.setVisible(self.can_be_placed and not is_asking)
         self._question.setVisible(is_asking)
         for button in (self.is_left, self.is_right):
             button.setVisible(is_asking)

@@ -31,6 +31,7 @@ SITE_WORDS = {
     Site.RIGHT_THIGH: later("Right thigh"),
     Site.RIGHT_SHANK: later("Right shank"),
     Site.RIGHT_FOOT: later("Right foot"),
+    Site.PELVIS: later("Pelvis"),
 }
 GRAVITY_WORDS = {  # by the finding that reports it
     "gravity_from_orientation": later("gravity added from orientation"),
@@ -129,6 +130,7 @@ def program_name(key: str) -> str:
         "movella-dot": tr("Movella DOT (files of its app)"),
         "xsens-mti": tr("Xsens MTi (raw bytes)"),
         "ximu3": tr("x-IMU3 (bytes or CSV)"),
+        "ximu": tr("x-IMU (CSV)"),
         "shimmer": tr("Shimmer (card or Consensys)"),
         "apdm": tr("APDM (Moveo, Mobility Lab or Motion Studio)"),
         "opensim": tr("OpenSim (orientations)"),

@@ -18,6 +18,7 @@ from app.reports.agreement.printed import (
     optical_words,
     other_angles_words,
     rows_of_table_1,
+    source_words,
     used_words,
     verdict_words,
 )
@@ -103,7 +104,8 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         for mark, title, of_walk, of_all in figures_of_table_1():
             first += [heading(f"{mark}: {title}", 2), _table_1(study, patient, of_walk, of_all)]
         first += [heading(tr("All walks together"), 2), _over_walks(study, patient)]
-        first += [note(" ".join([*other_angles_words(study), *used_words(study)]))]
+        stated = [*source_words(study), *other_angles_words(study), *used_words(study)]
+        first += [note(" ".join(typed(one, SENTENCE_LENGTH) for one in stated))]
         if any(walk.recording.gait for walk in study.with_angles):
             first += [heading(tr("Error by gait phase: RMSE in degrees, mean of each walk removed"), 2)]
             first += [_phases(study, patient)]

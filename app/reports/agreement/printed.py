@@ -11,6 +11,7 @@ from core.agreement.figures import Agreement, AgreementOverWalks
 from core.body import Joint, JointKind, Side
 from core.session import Patient
 from core.verdicts.model import Verdict
+from devices.files.references.reading import MARKERS
 from devices.files.refusal import one_line
 
 # their own measurements, ALGORITHMS section 4; the review's 5 degrees are of sessions, its abstract was read
@@ -83,6 +84,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
             assert over is not None  # as above
             yield _more(joint, role, over.whole)
         yield ""
+        yield from (f"  {stated}" for stated in source_words(study))
         yield from (f"  {stated}" for stated in other_angles_words(study))
         yield from (f"  {stated}" for stated in used_words(study))
         for number, walk in enumerate(walks, 1):
@@ -176,6 +178,15 @@ def verdict_words(study: AgreementStudy) -> list[str]:
                 )
             )
     return stated
+
+
+def source_words(study: AgreementStudy) -> list[str]:
+    """References that give no joint angles of their own, and what was made of them."""
+    files = dict.fromkeys(trial.file for walk in study.walks for trial, _ in walk.trials if trial.source == MARKERS)
+    stated = tr(
+        "{file} holds markers and no joint angles. Its angles were computed from the markers, in the plane of walking."
+    )
+    return [stated.format(file=one_line(file)) for file in files]
 
 
 def other_angles_words(study: AgreementStudy) -> list[str]:

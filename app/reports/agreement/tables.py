@@ -40,6 +40,7 @@ PLACE = ("recording", "joint", "angle")
 CLOCK = ("sign", "offset_s", "offset_sd_s", "clock_rate_ppm", "clock_rate_sd_ppm", "rate_likeness", "rate_gain")
 STATUS = ("shape_status", "height_status")
 USED = ("recorded", "outside_reference", "in_gaps", "after_slip")
+SOURCE = "reference_source"
 MEANING = {
     "recording": "the walk, or over walks",
     "joint": "left_knee, left_ankle, right_knee or right_ankle",
@@ -73,6 +74,7 @@ MEANING = {
     "outside_reference": "samples before or after every trial of the reference",
     "in_gaps": "samples inside of a trial that one of both systems has not",
     "after_slip": "samples after a strap of this leg slipped",
+    "reference_source": "angles, or markers: the reference holds no joint angles, which were computed from them",
 }
 
 
@@ -126,7 +128,20 @@ def agreement_header() -> list[str]:
     figures: list[str] = []
     for name in DEGREES:
         figures += [name, f"{name.removesuffix('_deg')}_sd_deg"] if name in ("z_rmse_deg", "m_rmse_deg") else [name]
-    return [*PLACE, "walks", "samples", *figures, "ranges", "correlation", *SHARES, *phases, *CLOCK, *STATUS, *USED]
+    return [
+        *PLACE,
+        "walks",
+        "samples",
+        *figures,
+        "ranges",
+        "correlation",
+        *SHARES,
+        *phases,
+        *CLOCK,
+        *STATUS,
+        *USED,
+        SOURCE,
+    ]
 
 
 def agreement_table(study: AgreementStudy) -> tuple[list[str], Iterator[list[str]]]:
@@ -144,13 +159,15 @@ def _rows(study: AgreementStudy) -> Iterator[list[str]]:
                 status = [str(verdicts.shape.verdict), str(verdicts.height.verdict)]
                 place = [typed_cell(walk.recording.name), str(joint), str(kind)]
                 used = _used_cells([walk.used[joint]])
-                yield [*place, "1", *_figures(walk.figures[joint, kind]), *_clock(walk, joint), *status, *used]
+                figures, source = _figures(walk.figures[joint, kind]), _source([walk])
+                yield [*place, "1", *figures, *_clock(walk, joint), *status, *used, source]
             over = study.over_walks(joint, kind)
             if over is not None:
                 figures = _figures(over.whole, over.z_sd_rad, over.m_sd_rad)
                 place = [OVER_WALKS, str(joint), str(kind), str(over.walks)]
-                used = _used_cells([walk.used[joint] for walk in study.walks if (joint, kind) in walk.figures])
-                yield [*place, *figures, *[""] * (len(CLOCK) + len(STATUS)), *used]
+                walks = [walk for walk in study.walks if (joint, kind) in walk.figures]
+                used = _used_cells([walk.used[joint] for walk in walks])
+                yield [*place, *figures, *[""] * (len(CLOCK) + len(STATUS)), *used, _source(walks)]
 
 
 def _figures(found: Agreement, z_sd_rad: float = math.nan, m_sd_rad: float = math.nan) -> list[str]:
@@ -189,6 +206,11 @@ def _clock(walk: ComparedWalk, joint: Joint) -> list[str]:
 def _used_cells(walks: Sequence[UsedSamples]) -> list[str]:
     counts = [(one.recorded, one.outside, one.in_gaps, one.after_slip) for one in walks]
     return [str(sum(column)) for column in zip(*counts, strict=True)]
+
+
+def _source(walks: Sequence[ComparedWalk]) -> str:
+    """How the reference's angles came about: angles or markers, or both."""
+    return " ".join(sorted({trial.source for walk in walks for trial, _ in walk.trials}))
 
 
 def curve_table(walk: ComparedWalk) -> tuple[list[str], Iterator[list[str]]]:
@@ -291,7 +313,7 @@ def summary_of(study: AgreementStudy) -> dict[str, object]:
 
 
 def _typed(header: list[str], row: list[str]) -> dict[str, object]:
-    words = {*PLACE, *STATUS}
+    words = {*PLACE, *STATUS, SOURCE}
     return {
         name: cell if name in words else (None if cell == "" else json.loads(cell))
         for name, cell in zip(header, row, strict=True)

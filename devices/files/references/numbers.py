@@ -7,12 +7,15 @@ import numpy as np
 
 from core.samples import FloatArray
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.tables import COPY_AGAIN, CORRECT_IT
+from devices.files.table_header import COPY_AGAIN, CORRECT_IT
+from devices.files.tables import number_in
+from devices.files.text_files import open_text
 
 
 def lines_of(path: Path) -> list[str]:
     """Read the lines of a text; raises FileRefusedError where it is no text."""
-    content = path.read_bytes()
+    with open_text(path) as file:
+        content = file.read()
     try:
         return content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
@@ -64,11 +67,8 @@ def check_ascending(time_s: FloatArray, where: str) -> None:
 
 
 def _number(cell: str, where: str) -> float:
-    text = cell.strip()
-    if not text:
-        return np.nan
     try:
-        value = float(text)
+        value = number_in(cell)
     except ValueError:
-        raise FileRefusedError(where, "{cell} is not a number", CORRECT_IT, cell=quoted(text)) from None
+        raise FileRefusedError(where, "{cell} is not a number", CORRECT_IT, cell=quoted(cell.strip())) from None
     return value if np.isfinite(value) else np.nan

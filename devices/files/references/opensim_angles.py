@@ -10,7 +10,7 @@ from core.samples import FloatArray
 from devices.files.references.numbers import check_ascending, lines_of, numbers_below
 from devices.files.references.trial import ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
-from devices.files.tables import COPY_AGAIN
+from devices.files.table_header import COPY_AGAIN
 
 END = "endheader"
 IN_DEGREES = re.compile(r"inDegrees\s*=\s*(yes|no)", re.IGNORECASE)

@@ -15,7 +15,8 @@ from core.samples import FloatArray
 from devices.files.references.numbers import check_ascending
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
+from devices.files.table_header import CORRECT_IT, SEPARATOR_LINE
+from devices.files.tables import Table, header_of, read_csv
 
 DELIMITERS = ",;\t"
 COMMENT = "#"
@@ -27,7 +28,7 @@ FORMAT, SOURCE = "csv", "angles"
 def is_csv(_path: Path, head: bytes) -> bool:
     """Whether the first line that is no comment names columns of ours."""
     for line in head.decode("utf-8-sig", errors="replace").splitlines():
-        if line.strip() and not line.startswith(COMMENT):
+        if line.strip() and not line.startswith(COMMENT) and not SEPARATOR_LINE.fullmatch(line.encode()):
             names = {name.strip().strip('"') for d in DELIMITERS for name in line.split(d)}
             return bool({TIME, *ENDS_AND_LENGTH} & names)
     return False

@@ -10,6 +10,7 @@ from devices.files.references.plain_csv import is_csv, read_plain_csv
 from devices.files.references.trial import ReferenceFile
 from devices.files.references.visual3d import is_visual3d, read_visual3d
 from devices.files.refusal import FileRefusedError
+from devices.files.text_files import as_utf8
 
 HEAD_BYTES = 65_536
 
@@ -28,7 +29,8 @@ READERS: Mapping[str, ReferenceFormat] = {
     "csv": ReferenceFormat(is_csv, read_plain_csv),
     "visual3d": ReferenceFormat(is_visual3d, read_visual3d),
 }
-SOURCES = ("angles", "markers", "events", "strides")
+MARKERS = "markers"
+SOURCES = ("angles", MARKERS, "events", "strides")
 
 
 def read_reference(path: Path) -> ReferenceFile:
@@ -38,7 +40,7 @@ def read_reference(path: Path) -> ReferenceFile:
     if not path.exists():
         raise FileRefusedError(str(path), "this file does not exist", "Check the file's name")
     with path.open("rb") as file:
-        head = file.read(HEAD_BYTES)
+        head = as_utf8(file.read(HEAD_BYTES))
     for one in READERS.values():
         if one.is_it(path, head):
             return one.read(path)

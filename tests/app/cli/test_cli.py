@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,7 @@ from core.results import Method
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind, Session
 from devices.files.formats import FORMATS
-from devices.files.session_folder import write_session
+from devices.files.session_folder import read_session, write_session
 
 ROOT = Path(__file__).parents[3]
 
@@ -522,6 +523,21 @@ def test_an_import_makes_a_session_and_a_second_one_adds_to_it(
     assert analyse(out, tmp_path / "out", "--no-rrd") == 0
 
 
+def test_a_mapping_file_places_sensors_and_they_may_have_shared_a_receiver(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], test_data: Callable[[str], Path]
+) -> None:
+    folder, out = test_data("vendor_exports/xsens_mtmanager"), tmp_path / "session"
+    files = map(str, sorted(folder.glob("OpenSenseExample_MT*.txt")))
+    mapping = str(folder / "OpenSenseExample_myIMUMappings.xml")
+    assert main(["import", *files, "--map", mapping, "--one-receiver", "--out", str(out)]) == 0
+    assert f"{out} now holds walk 1, with 7 of 7 sites." in capsys.readouterr().out
+    session = read_session(out)
+    assert session.sensors[Site.LEFT_THIGH].serial == "00B421EE"
+    assert {info.clock for info in session.sensors.values()} == {"one receiver"}
+    assert imported(tmp_path, tmp_path / "other", "--one-receiver") == 0
+    assert "with 2 of 6 sites." in capsys.readouterr().out
+
+
 def test_an_import_shows_the_program_by_the_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mt = mt_file(tmp_path, "00B42D4B", 0).rename(tmp_path / "opal.csv")
     apdm = tmp_path / "MT_01-000_00B42D4B.txt"
@@ -536,7 +552,7 @@ def test_an_import_shows_the_program_by_the_content(tmp_path: Path, capsys: pyte
     strange = tmp_path / "taxes.csv"
     strange.write_text("year,amount\n2026,1\n")
     assert main(["import", str(strange), *where]) == 2
-    assert "taxes.csv: the file format is not recognised. Supported formats:" in refusal(capsys)
+    assert "taxes.csv: the file format is not recognised, and the file is no table of numbers" in refusal(capsys)
     assert len(files_in(tmp_path / "session")) == 2
 
 

@@ -120,6 +120,21 @@ def test_the_files_know_their_day_better_than_somebody_who_types_it() -> None:
     assert session.started == session.recordings[0].started == "2026-03-09T09:00:00"
 
 
+def test_sensors_that_shared_a_receiver_have_its_clock_unless_their_files_give_them_others() -> None:
+    (draft,) = drafts_of([("walk", trial(named("Left Thigh", "Left Shank")))])
+    sites = {"S0": Site.LEFT_THIGH, "S1": Site.LEFT_SHANK}
+    assert draft.is_clock_open
+    for is_one, clocks in ((True, {"one receiver"}), (False, {""})):
+        session = session_of(draft, [RecordingKind.WALKING], sites, is_one_receiver=is_one)
+        assert {info.clock for info in session.sensors.values()} == clocks
+    known = trial(named("Left Thigh", "Left Shank"))
+    on_own = [replace(one, info=replace(one.info, clock=one.name)) for one in known.sensors]
+    (draft,) = drafts_of([("walk", replace(known, sensors=tuple(on_own)))])
+    assert not draft.is_clock_open
+    with pytest.raises(FileRefusedError, match='gives it the clock "Left Thigh", so the sensors did not share one'):
+        session_of(draft, [RecordingKind.WALKING], sites, is_one_receiver=True)
+
+
 def test_two_sensors_at_one_site_are_refused() -> None:
     (draft,) = drafts_of([("walk", trial(named("a", "b")))])
     with pytest.raises(FileRefusedError, match="left_foot is given twice"):

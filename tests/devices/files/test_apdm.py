@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from core.body import Site
 from core.samples import RateKind
 from devices.files.apdm import apdm_trial
+from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
 from tests.trials_of_files import import_with, refused
 
@@ -142,10 +143,23 @@ def test_other_units_are_refused_with_their_name(tmp_path: Path) -> None:
     apdm_trial([monitors(tmp_path / "e.csv", acc=13.0, gyr=34.0)])  # a hard blow, as fast as the sensor can
 
 
+def test_the_last_rows_may_be_cut_short_and_decimal_signs_be_commas(tmp_path: Path) -> None:
+    rows = [[f"{0.1 * k:.1f}", "0.5", "0", "9.81", "0", "0", "0.25"] for k in range(10)]
+    whole = moveo(tmp_path / "a.csv", rows).read_text()
+    (tmp_path / "b.csv").write_text(whole.replace(",", ";").replace(".", ","))
+    with (tmp_path / "b.csv").open("a") as file:
+        file.write("1,0;0,5\n1,1;0,5\n")
+    assert recognised([tmp_path / "b.csv"]) == "apdm"
+    one, other = (apdm_trial([tmp_path / name]).sensors[0] for name in ("a.csv", "b.csv"))
+    np.testing.assert_array_equal(one.block.acc_m_s2, other.block.acc_m_s2)
+    np.testing.assert_array_equal(one.block.time_s, other.block.time_s)
+    assert [(found.key, found.numbers) for found in other.findings] == [("rows_cut_short", {"count": 2})]
+
+
 def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     row = ["0.1", "0", "0", "9.81", "0", "0", "0"]
     assert "a.csv, line 6: the line has 3 cells, but the header has 7" in refusal(
-        moveo(tmp_path / "a.csv", [row, row[:3]])
+        moveo(tmp_path / "a.csv", [row, row[:3], row])
     )
     assert 'b.csv, line 5: "moved" is not a number' in refusal(moveo(tmp_path / "b.csv", [["0.1", "moved", *row[2:]]]))
     back = ["0.05", *row[1:]]
@@ -161,7 +175,7 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     assert "j.csv: the header lines of the file differ in length" in refusal(
         written(tmp_path / "j.csv", [*cells[:2], *short])
     )
-    (tmp_path / "g.csv").write_bytes(b"Test Name:,\xff\xfe")
+    (tmp_path / "g.csv").write_bytes(b"Test Name:," + b"x" * 70_000 + b"\xff")
     assert "the file is not comma-separated text" in refusal(tmp_path / "g.csv")
     assert "the file is not an export from APDM software" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))
 

@@ -6,6 +6,7 @@ No file of APDM's programs is at hand: the samples are those of a CSV export, th
 import csv
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -38,8 +39,15 @@ def stamps(rows: int = 40) -> NDArray[np.uint64]:
     return (START_US + np.round(1e6 / 128 * np.arange(rows))).astype(np.uint64)
 
 
-def version_5(path: Path, sensors: dict[str, tuple[str, NDArray[np.uint64], Samples]], version: int = 5) -> Path:
+def version_5(
+    path: Path,
+    sensors: dict[str, tuple[str, NDArray[np.uint64], Samples]],
+    version: int = 5,
+    *,
+    is_packed: bool = False,
+) -> Path:
     """Mobility Lab 2 and Moveo: a group per sensor number, its label among its configuration."""
+    packing: dict[str, Any] = {"chunks": (8, 1), "compression": "gzip"} if is_packed else {}
     with h5py.File(path, "w") as file:
         file.attrs["FileFormatVersion"] = version
         for number, (label, time, samples) in sensors.items():
@@ -50,7 +58,7 @@ def version_5(path: Path, sensors: dict[str, tuple[str, NDArray[np.uint64], Samp
             group["Time"] = time
             for name, values in samples.items():
                 place = f"Processed/{number}/{name}" if name == "Orientation" else f"Sensors/{number}/{name}"
-                file[place] = values
+                file.create_dataset(place, data=values, **packing)
     return path
 
 
@@ -96,6 +104,16 @@ def test_samples_of_an_export_come_back_from_hdf5(test_data: FindData, tmp_path:
     np.testing.assert_allclose(block.q_earth_from_sensor, rows[:, 9:13], atol=1e-6)
     np.testing.assert_allclose(block.time_s, np.arange(len(rows)) / 128.0, atol=1e-6)
     assert (info.serial, info.rate_hz, info.rate_kind) == ("1262", 128.0, RateKind.INSTANTANEOUS)
+
+
+def test_packed_values_are_the_same(tmp_path: Path) -> None:
+    sensors = {"1": ("A", stamps(), still())}
+    plain, packed = (
+        apdm_trial([version_5(tmp_path / f"{is_packed}.h5", sensors, is_packed=is_packed)]).sensors[0].block
+        for is_packed in (False, True)
+    )
+    assert np.array_equal(plain.acc_m_s2, packed.acc_m_s2)
+    assert np.array_equal(plain.time_s, packed.time_s)
 
 
 @pytest.mark.parametrize("version", [3, 4])

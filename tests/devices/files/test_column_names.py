@@ -103,6 +103,9 @@ def test_acceleration_goes_before_free_acceleration() -> None:
 def test_two_columns_of_one_meaning_are_refused() -> None:
     with pytest.raises(FileRefusedError, match="the columns acc_x, ax have the same meaning"):
         sensor_columns([*columns_of(""), "ax"])
-    with pytest.raises(FileRefusedError, match="the columns time_s, time_ms have the same meaning"):
-        sensor_columns([*columns_of(""), "time_s", "time_ms"])
     assert sensor_columns([*columns_of(""), "timestamp", "time_ms"])[0].time == "time_ms"
+
+
+def test_of_two_times_the_one_is_taken_that_other_files_share() -> None:
+    assert sensor_columns([*columns_of(""), "elapsed (s)", "epoc (ms)"])[0].time == "epoc (ms)"
+    assert sensor_columns([*columns_of(""), "time_s", "time_ms"])[0].time == "time_s"

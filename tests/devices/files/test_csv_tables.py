@@ -183,7 +183,7 @@ def test_a_clock_of_32_bits_that_turns_goes_on(tmp_path: Path) -> None:
 
 
 def test_what_names_leave_open_is_asked_for(tmp_path: Path) -> None:
-    slow = named("acc_{}_m_s2", "gyr_{}")  # 3 rad/s, and it might be 3 deg/s
+    slow = named("acc_{}_m_s2", "gyr_{}", gyr_unit=100.0)  # 0.03 rad/s or deg/s: it hardly turns
     assert (
         "it is unclear whether the angular rates gyr_x, gyr_y, gyr_z are in rad/s or in deg/s. Name the columns with"
         in refusal(write(tmp_path / "a.csv", {"time_s": TIME_S, **slow}))
@@ -236,8 +236,8 @@ def test_times_are_held_to_their_size(tmp_path: Path) -> None:
     assert 'a.csv, line 7: a sample has no time in column "time_s"' in refusal(
         write(path, {"time_s": empty, **columns})
     )
-    coarse = np.floor(TIME_S * 10) / 10
-    assert "360 of 400 samples have the same time as the sample before. Export the times with more digits" in refusal(
+    coarse = np.floor(TIME_S)
+    assert "396 of 400 samples have the same time as the sample before. Export the times with more digits" in refusal(
         write(path, {"time_s": coarse, **columns})
     )
 

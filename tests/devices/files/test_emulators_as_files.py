@@ -66,4 +66,4 @@ def test_bytes_that_no_program_keeps_so_are_called_none(tmp_path: Path, kind: st
     path.write_bytes(STATED[kind]())
     assert format_of(path) is None
     (refusal,) = gather([path]).refused
-    assert refusal.what == "this file format is not supported"
+    assert refusal.what.startswith("the file format is not recognised")

@@ -1,5 +1,6 @@
 """Spoilt files raise nothing but refusals, end nothing, and nothing is written."""
 
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -16,6 +17,15 @@ def reader() -> Iterator[LimitedReader]:
     reader = LimitedReader()
     yield reader
     reader.close()
+
+
+def test_the_good_files_are_the_same_whenever_they_are_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that a seed gives the same spoilt files again."""
+    first = importers()
+    monkeypatch.setattr(time, "time", lambda: 1_000_000_000.0)
+    monkeypatch.setattr(time, "asctime", lambda: "another day")
+    again = importers.__wrapped__()
+    assert [name for name in first if first[name].content != again[name].content] == []
 
 
 @pytest.mark.endurance

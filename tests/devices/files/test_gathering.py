@@ -72,7 +72,7 @@ def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
 def test_the_files_of_one_trial_are_those_of_its_name(test_data: FindData) -> None:
     found = gather([test_data("vendor_exports/xsens_mtmanager")])
     walk = next(one for one in found.trials if one.name.startswith("OpenSenseExample"))
-    assert len(walk.files) == 8
+    assert len(walk.files) == 9  # eight sensors and the mapping that names them
     assert len(next(one for one in found.trials if one.name.startswith("MT46")).files) == 2
 
 

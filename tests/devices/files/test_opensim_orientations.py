@@ -126,8 +126,18 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     assert (
         "the times in the file are not evenly spaced, so angular rates cannot be derived from the orientation"
     ) in refusal(edited(good(), "0.020000\t", "0.025000\t"))
-    path.write_bytes(good().read_bytes().replace(b"version", b"\xff\xfe"))
-    assert "a.sto, line 3: the file is not UTF-8 text" in refusal(path)
+    path.write_bytes(good().read_bytes().replace(b"0.020000\t", b"0.02\xff\xfe\t"))
+    assert "a.sto, line 9: a value is not a number" in refusal(path)
+
+
+def test_decimal_commas_and_rows_cut_at_the_end_are_read(tmp_path: Path) -> None:
+    whole = sto(tmp_path / "a.sto", swinging_sensor(), swinging_sensor())
+    lines = whole.read_text().splitlines()
+    numbers = [line.replace(".", ",") for line in lines[len(HEAD) + 1 :]]
+    (tmp_path / "b.sto").write_text("\n".join([*lines[: len(HEAD) + 1], *numbers, "9,990000", ""]))
+    one, other = (opensim_trial([tmp_path / name]).sensors[0] for name in ("a.sto", "b.sto"))
+    np.testing.assert_array_equal(one.block.q_earth_from_sensor, other.block.q_earth_from_sensor)
+    assert [found.key for found in other.findings][:1] == ["rows_cut_short"]
 
 
 def test_the_angle_between_two_sensors_is_known_without_acceleration(tmp_path: Path) -> None:

@@ -17,8 +17,9 @@ from core.findings import Finding
 from devices.files import xdf_streams
 from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
+from devices.files.straight_times import straight_times
 from devices.files.trial import ImportedSensor
-from devices.files.xdf import straight_times, xdf_trial
+from devices.files.xdf import xdf_trial
 from devices.simulation.walker_body import Walk, WalkerSettings
 from tests.simulated import session_of
 from tests.trials_of_files import import_with, refused

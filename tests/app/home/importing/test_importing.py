@@ -142,7 +142,10 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
     (tmp_path / "notes.txt").write_text("to be left out\n")
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
     stated = shown(page)
-    assert "notes.txt: this file format is not supported. Leave this file out." in stated
+    assert (
+        "notes.txt: the file format is not recognised, and the file is no table of numbers. Leave this file out"
+        in stated
+    )
     assert "mt.txt: the sample rate is missing." in stated
     page.rate.set_value(100.0)
     page.read_again.click()
@@ -155,7 +158,8 @@ def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Hom
     (tmp_path / "notes.txt").write_text("to be left out\n")
     home.importing.read([tmp_path / "notes.txt"])
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert home.banner.text == "This file format is not supported. Leave this file out. Where: notes.txt."
+    assert home.banner.text.startswith("The file format is not recognised, and the file is no table of numbers.")
+    assert home.banner.text.endswith("Where: notes.txt.")
     assert home.current is home.page
 
 
@@ -163,7 +167,7 @@ def test_the_motion_places_the_sensors_of_a_real_walk(qtbot: QtBot, home: Home, 
     folder = test_data("vendor_exports/xsens_mtmanager")
     page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_*.txt")))
     for torso in ("00B42268", "00B42279"):
-        choices(page)[f"Position of {torso}"].setCurrentIndex(7)
+        choices(page)[f"Position of {torso}"].setCurrentIndex(8)
     page.draft.place.click()
     qtbot.waitUntil(page.draft.is_right.isVisible, timeout=WAIT_MS)
     assert (
@@ -180,7 +184,7 @@ def test_a_site_that_was_stated_shows_the_side(qtbot: QtBot, home: Home, test_da
     folder = test_data("vendor_exports/xsens_mtmanager")
     page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_*.txt")))
     for torso in ("00B42268", "00B42279"):
-        choices(page)[f"Position of {torso}"].setCurrentIndex(7)
+        choices(page)[f"Position of {torso}"].setCurrentIndex(8)
     thigh = choices(page)["Position of 00B4227C"]
     thigh.setCurrentIndex(1)  # left, whatever it was
     page.draft.place.click()
@@ -192,6 +196,56 @@ def test_a_site_that_was_stated_shows_the_side(qtbot: QtBot, home: Home, test_da
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert "The movement does not fit the entered sensor positions" in home.banner.text
     assert page.draft.sites["00B421E6"] is None
+
+
+def legs_of_a_real_walk(test_data: FindData) -> list[Path]:
+    """Its six sensors on legs, whose names state nothing."""
+    every = test_data("vendor_exports/xsens_mtmanager").glob("OpenSenseExample_*.txt")
+    return sorted(path for path in every if not path.stem.endswith(("00B42268", "00B42279")))
+
+
+def test_positions_are_proposed_from_movement_without_being_asked_for(
+    qtbot: QtBot, home: Home, test_data: FindData
+) -> None:
+    page = read(qtbot, home, *legs_of_a_real_walk(test_data))
+    qtbot.waitUntil(page.draft.is_right.isVisible, timeout=WAIT_MS)
+    assert "00B4227C, 00B4227D and 00B421EF are on one leg" in shown(page)
+    assert not page.draft.is_left.hasFocus()  # somebody may be typing
+    assert set(page.draft.sites.values()) == {None}
+    page.draft.is_right.click()
+    assert page.draft.sites["00B421EF"] is Site.RIGHT_FOOT
+
+
+def test_a_mapping_file_names_seven_positions(qtbot: QtBot, home: Home, test_data: FindData) -> None:
+    folder = test_data("vendor_exports/xsens_mtmanager")
+    mapping = folder / "OpenSenseExample_myIMUMappings.xml"
+    page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_MT*.txt")), mapping)
+    assert set(page.draft.sites.values()) == {*Site, None}  # the torso's is none of them
+    assert shown(page).replace("unclear from its name", "").count("from its name") == 7
+    assert choices(page)["Position of pelvis_imu (00B42279)"].currentText() == "Pelvis"
+    assert not page.draft.what_is_wrong
+
+
+def test_that_sensors_shared_a_receiver_is_asked_where_files_do_not_state_it(
+    qtbot: QtBot, home: Home, controller: LibraryController, test_data: FindData, tmp_path: Path
+) -> None:
+    page = read(qtbot, home, *legs_of_a_real_walk(test_data))
+    assert page.draft.one_receiver.isVisible()
+    assert not page.draft.is_one_receiver
+    page.draft.one_receiver.click()
+    for number, key in enumerate(page.draft.sites, 1):
+        choices(page)[f"Position of {key}"].setCurrentIndex(number)
+    page.code.set_text("P-0301")
+    QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
+    assert controller.state is not None
+    library = controller.state.library.library
+    patient = library.patients.find("P-0301")
+    assert patient is not None
+    (summary,) = library.sessions.list(patient.id)
+    assert {info.clock for info in library.sessions.get(summary.id).details.sensors.values()} == {"one receiver"}
+    alone = read(qtbot, home, monitors(tmp_path / "walk.csv", ("Left Thigh",)))
+    assert not alone.draft.one_receiver.isVisible()
 
 
 def test_import_begins_with_a_choice_of_files_or_a_folder(qtbot: QtBot, home: Home) -> None:

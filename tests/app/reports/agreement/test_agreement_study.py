@@ -335,6 +335,20 @@ def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_stated(
     ]
 
 
+def test_a_reference_of_markers_is_named_as_such_and_one_of_angles_is_not(
+    simulated: tuple[Session, SessionTruth, Analysis], study: AgreementStudy, tmp_path: Path
+) -> None:
+    _, truth, analysis = simulated
+    name, file = trials(rows_of(truth, "walk 1"), tmp_path, "walk.c3d")
+    of_markers = study_of(analysis, [(name, replace(file, source="markers"))])
+    sentence = "walk.c3d holds markers and no joint angles. Its angles were computed from the markers"
+    assert any(sentence in line for line in printed(of_markers, Patient()))
+    assert not any("markers" in line for line in printed(study, Patient()))
+    for found, source in ((of_markers, "markers"), (study, "angles")):
+        header, rows = agreement_table(found)
+        assert {row[header.index("reference_source")] for row in rows} == {source}
+
+
 def test_a_trial_of_times_that_another_shows_is_left_over(
     simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
 ) -> None:

@@ -5,6 +5,7 @@ C3D by the library that reads them elsewhere, too.
 """
 
 import re
+import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,7 +16,6 @@ import pytest
 from core.body import Joint, Side
 from devices.files.answers import Array, BrokenAnswerError, details_of
 from devices.files.limited_reader import LimitedReader, LimitedReading
-from devices.files.references import c3d_angles
 from devices.files.references.answers import reference_from
 from devices.files.references.markers import angles_of_markers, landmark_of
 from devices.files.references.reading import read_reference
@@ -276,6 +276,66 @@ def test_a_c3d_has_angles_by_name_events_and_gaps_where_residuals_say_so(read: R
     np.testing.assert_allclose(found.trials[0].events[Side.RIGHT]["toe_off"], [62.5], atol=1e-4)
 
 
+def c3d_by_hand(points: np.ndarray, processor: int, scale: float, frames: float, analogs: int = 0) -> bytes:
+    """A C3D of points (n, k, 3) at 100 Hz, byte by byte by the format's guide: any processor, integers or floats."""
+    order, n, k = ">" if processor == 86 else "<", len(points), points.shape[1]
+
+    def real(value: float) -> bytes:
+        packed = struct.pack(f"{order}f", value * (4.0 if processor == 85 else 1.0))
+        return packed[2:] + packed[:2] if processor == 85 else packed
+
+    def parameter(name: str, kind: int, shape: tuple[int, ...], content: bytes) -> bytes:
+        data = struct.pack("bB", kind, len(shape)) + bytes(shape) + content + b"\0"
+        return struct.pack("bb", len(name), 1) + name.encode() + struct.pack(f"{order}h", len(data) + 2) + data
+
+    labels = b"".join(name.encode().ljust(12) for name in ("LKneeAngles", "RKneeAngles")[:k])
+    group = struct.pack("bb", 5, -1) + b"POINT" + struct.pack(f"{order}h", 3) + b"\0"
+    written = [
+        group,
+        parameter("USED", 2, (), struct.pack(f"{order}h", k)),
+        parameter("SCALE", 4, (), real(scale)),
+        parameter("RATE", 4, (), real(100.0)),
+        parameter("LABELS", -1, (12, k), labels),
+        parameter("FRAMES", 4, (), real(frames)),
+    ]
+    body = (bytes([1, 80, 1, processor]) + b"".join(written)).ljust(512, b"\0")
+    header = struct.pack("BB", 2, 80) + struct.pack(f"{order}5H", k, analogs, 1, min(n, 65_535), 10)
+    header += real(scale) + struct.pack(f"{order}H", 3)
+    data = b""
+    for frame in points:
+        words = [value for point in frame for value in (*point, 0.0 if np.isfinite(point).all() else -1.0)]
+        words = [0.0 if not np.isfinite(value) else value for value in words] + [7.0] * analogs
+        if scale > 0:
+            data += struct.pack(f"{order}{len(words)}h", *(round(w / scale) if w != -1.0 else -1 for w in words))
+        else:
+            data += b"".join(map(real, words))
+    return header.ljust(512, b"\0") + body + data
+
+
+@pytest.mark.parametrize("processor", [84, 85, 86])
+@pytest.mark.parametrize("scale", [-1.0, 0.01])
+@pytest.mark.parametrize("analogs", [0, 3])
+def test_a_c3d_of_any_processor_is_read_with_frames_as_a_float(
+    read: Read, processor: int, scale: float, analogs: int
+) -> None:
+    points = np.stack([bent(KNEE_DEG).T, bent(-KNEE_DEG).T], axis=1)
+    points[10:15, 0] = np.nan
+    found = read(c3d_by_hand(points, processor, scale, len(points), analogs))
+    knee = degrees(found, Joint.LEFT_KNEE)
+    assert np.isnan(knee[10:15]).all()
+    np.testing.assert_allclose(np.delete(knee, range(10, 15)), np.delete(KNEE_DEG, range(10, 15)), atol=0.006)
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_KNEE), -KNEE_DEG, atol=0.006)
+    assert found.trials[0].angles[Joint.LEFT_KNEE][0][0] == 0.0
+
+
+def test_a_c3d_of_more_frames_than_16_bits_count_is_read_whole(read: Read) -> None:
+    """Frames are those of the file: the header ends at 65 535."""
+    many = 70_000
+    points = np.ones((1, 1, 3)).repeat(many, axis=0)
+    found = read(c3d_by_hand(points, 84, -1.0, 65_535.0))
+    assert len(degrees(found, Joint.LEFT_KNEE)) == many
+
+
 def leg(turn: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """Markers (3, n) in mm of a right leg that goes along y with its joints bent by KNEE_DEG and ANKLE_DEG."""
     thigh = np.deg2rad(10.0) + 0 * TIME_S  # forward of the vertical
@@ -321,12 +381,6 @@ def test_a_c3d_of_other_points_and_a_broken_one_are_refused(read: Read, tmp_path
             FileRefusedError, match=r"ends before the end of its data; it may have been cut off\. Copy the file again"
         ):
             read(content[:length])
-
-
-def test_without_the_library_a_c3d_states_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(c3d_angles, "find_spec", lambda _name: None)
-    with pytest.raises(FileRefusedError, match=r"Install gaitwright\[imports\]"):
-        c3d_angles.read_c3d(tmp_path / "any.c3d")
 
 
 def test_an_answer_that_no_reader_gives_is_not_believed(tmp_path: Path) -> None:

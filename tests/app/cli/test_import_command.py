@@ -1,0 +1,77 @@
+"""Tests that `gaitwright import` takes what is stated of a table, and shows how it reads one."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import arguments
+from app.cli.main import main
+from core.body import Site
+from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
+from devices.files import table_choices, text_files
+from devices.files.session_folder import read_session
+from tests.devices.files.test_public_layouts import LEFT, no_header, rows_of, write
+
+BY_HAND = ["--header-line", "0", "--acc", "2,3,4", "--gyr", "5,6,7", "--gyr-unit", "rad/s", "--time", "1"]
+
+
+def test_the_words_of_the_options_are_those_of_the_tables() -> None:
+    assert arguments.ENCODINGS == text_files.ENCODINGS
+    assert arguments.SEPARATORS == table_choices.SEPARATORS
+    assert arguments.TIME_UNITS == table_choices.TIME_UNITS
+    assert tuple(FORCE_UNITS) == arguments.FORCE_UNITS
+    assert tuple(RATE_UNITS) == arguments.RATE_UNITS
+
+
+def test_a_table_without_names_is_read_as_stated(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (path,), out = no_header(tmp_path), tmp_path / "session"
+    where = ["--map", "left_shank=a", "--out", str(out)]
+    assert main(["import", str(path), *where]) == 2
+    assert "a.csv: the file format is not recognised; the table has no header" in capsys.readouterr().err
+    assert main(["import", str(path), *where, *BY_HAND]) == 0
+    block = read_session(out).recordings[0].imu[Site.LEFT_SHANK]
+    np.testing.assert_allclose(block.acc_m_s2, LEFT.acc, atol=1e-5)
+    np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
+
+
+def test_a_preview_gives_the_options_that_read_the_table_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (path,) = no_header(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["import", str(path), "--preview"]) == 0
+    shown = capsys.readouterr().out
+    assert "columns: 1 column 1, 2 column 2" in shown
+    assert "--header-line 0 --separator comma --decimal point" in shown
+    assert "--acc 'column 2,column 3,column 4' --acc-unit m/s2" in shown
+    assert "The columns were found by their values alone: check them." in shown
+    assert "sensor a: 100 Hz, 8.0 s" in shown
+    assert sorted(tmp_path.rglob("*")) == before
+    named = write(tmp_path / "b.csv", ["time_s,ax,ay,az,gx,gy,gz", *rows_of(LEFT.time_s, LEFT.acc, LEFT.gyr)])
+    assert main(["import", str(named), "--preview"]) == 0
+    assert "by their values alone" not in capsys.readouterr().out
+
+
+def test_a_preview_states_why_a_table_cannot_be_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (path,) = no_header(tmp_path)
+    assert main(["import", str(path), "--preview", *BY_HAND, "--acc-unit", "g"]) == 0
+    assert "is labelled g, but its median of" in capsys.readouterr().out
+    assert main(["import", str(write(tmp_path / "a.txt", ["Dear all"])), "--preview"]) == 0
+    assert "the file is no table of numbers" in capsys.readouterr().out
+
+
+def test_without_positions_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (path,) = no_header(tmp_path)
+    assert main(["import", str(path), *BY_HAND, "--out", str(tmp_path / "session")]) == 2
+    assert "--map: no sensor position is given. Write the assignment as left_thigh=" in capsys.readouterr().err
+    assert not (tmp_path / "session").exists()
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [("--acc", "x,y"), ("--acc", "x,,z"), ("--header-line", "-1"), ("--separator", ";"), ("--time-unit", "hours")],
+)
+def test_what_no_option_means_is_refused(option: str, value: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["import", "a.csv", "--preview", option, value])
+    assert ended.value.code == 2
+    assert option in capsys.readouterr().err
