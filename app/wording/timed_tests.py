@@ -9,13 +9,14 @@ import math
 
 from app.wording.body import name_of
 from app.wording.numbers import clock
-from app.wording.translation import figure_text, joined, later, short_figure, tr, tr_n
-from core.timed.found import DistanceSource, NotMeasured, NotValid, Part, TimedTest
+from app.wording.translation import figure_text, joined, later, short_figure, tr, tr_n, within_sentence
+from core.timed.found import DistanceSource, NotMeasured, NotValid, PartOfUpAndGo, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol, course_of
 
 RUN_IN_AND_OUT_M = 4.0
 ALLOWED_PERCENT = 3.0  # more than that off the tape, the sensors' distance is not to be read
 GRAVEST_FIRST = (
+    *(NotValid.OTHER_TIME, NotValid.FEWER_RISES),
     *(NotValid.NO_RISE, NotValid.NO_TURN, NotValid.MORE_TURNS, NotValid.COURSE_SHORTER, NotValid.COURSE_LONGER),
     *(NotValid.NO_TURN_TO_SIT, NotValid.ELSEWHERE, NotValid.LAP_DIFFERS, NotValid.DISTANCE_DIFFERS),
 )
@@ -60,6 +61,12 @@ def instruction(planned: PlannedTest) -> str:
     }[planned.protocol].format(whole=short_figure(course_m + RUN_IN_AND_OUT_M, 2), course=short_figure(course_m, 2))
 
 
+def name_within_sentence(protocol: TimedProtocol) -> str:
+    """The same amid a sentence; an up and go is written as a name."""
+    name = name_of_test(protocol)
+    return name if protocol is TimedProtocol.UP_AND_GO else within_sentence(name)
+
+
 def planned_words(planned: PlannedTest | None) -> str:
     """Which test a walk is, with the instants of its keys: "10-metre walk, key at the start: 3.2 s"."""
     if planned is None:
@@ -72,15 +79,15 @@ def planned_words(planned: PlannedTest | None) -> str:
     return ", ".join(stated)
 
 
-def name_of_part(part: Part) -> str:
+def name_of_part(part: PartOfUpAndGo) -> str:
     """A part of an up and go as it is called."""
     return {
-        Part.RISE: tr("Rise"),
-        Part.WALK_OUT: tr("Walk out"),
-        Part.TURN: tr("Turn"),
-        Part.WALK_BACK: tr("Walk back"),
-        Part.TURN_TO_SIT: tr("Turn to sit"),
-        Part.SIT: tr("Sit down"),
+        PartOfUpAndGo.RISE: tr("Rise"),
+        PartOfUpAndGo.WALK_OUT: tr("Walk out"),
+        PartOfUpAndGo.TURN: tr("Turn"),
+        PartOfUpAndGo.WALK_BACK: tr("Walk back"),
+        PartOfUpAndGo.TURN_TO_SIT: tr("Turn to sit"),
+        PartOfUpAndGo.SIT: tr("Sit down"),
     }[part]
 
 
@@ -104,6 +111,8 @@ def not_valid_sentence(test: TimedTest) -> str:
         NotValid.ELSEWHERE: tr("seated elsewhere than at the start"),
         NotValid.LAP_DIFFERS: tr("laps of {found} m by the feet, {course} m entered"),
         NotValid.DISTANCE_DIFFERS: tr("{distance} m entered, {walked} m by the feet"),
+        NotValid.OTHER_TIME: tr("timed for {time}, the test takes {whole}"),
+        NotValid.FEWER_RISES: tr("{count} of {required} rises"),
     }[first]
     stated = reason.format(
         found=figure_text(test.course_found_m, ".1f"),
@@ -111,6 +120,10 @@ def not_valid_sentence(test: TimedTest) -> str:
         walked=figure_text(test.sensor_distance_m, ".1f"),
         distance=short_figure(test.distance_m, 1),
         turns=sum(turn.is_about for turn in test.turns),
+        time=clock(test.time_s),
+        whole=clock(test.definition.duration_s or 0.0),
+        count=len(test.rises),
+        required=test.definition.rises,
     )
     return tr("Not valid: {reason}.").format(reason=stated)
 
@@ -135,6 +148,8 @@ def remedy_sentence(test: TimedTest) -> str:
         NotValid.ELSEWHERE: tr("Repeat the test: back to the chair that it began from."),
         NotValid.LAP_DIFFERS: tr("Check the length of the lap."),
         NotValid.DISTANCE_DIFFERS: tr("Check the laps, their length and the rest."),
+        NotValid.OTHER_TIME: tr("Repeat the test for its whole time."),
+        NotValid.FEWER_RISES: tr("Repeat the test with all rises."),
     }[min(test.not_valid, key=GRAVEST_FIRST.index)].format(course=short_figure(test.course_m, 2))
 
 

@@ -35,6 +35,8 @@ class NotValid(StrEnum):
     ELSEWHERE = "not_back_at_the_chair"
     LAP_DIFFERS = "lap_length_differs_from_feet"
     DISTANCE_DIFFERS = "typed_distance_differs_from_feet"
+    OTHER_TIME = "not_the_time_of_the_test"
+    FEWER_RISES = "fewer_rises_than_the_test_has"
 
 
 class Validity(StrEnum):

@@ -24,6 +24,7 @@ from core.timed.validity import (
     check_laps,
     check_straight,
     check_up_and_go,
+    check_whole,
     cone_turns,
     laps_of,
     length_reasons,
@@ -86,7 +87,7 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
         sittings=tuple(one for one in seat.sittings if start_s < one.seated_s <= end_s),
         course_m=course.course_m,
         course_found_m=course.checked.found_m,
-        not_valid=course.checked.reasons,
+        not_valid=(*check_whole(definition, seat, (start_s, end_s)), *course.checked.reasons) if is_whole else (),
         distance_source=course.source,
     )
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from core.samples import FloatArray
 from core.timed.found import NotValid, Turn
+from core.timed.protocols import Definition
 from core.timed.seat import SeatMotions
 from core.timed.way import BodyWay
 
@@ -24,6 +25,7 @@ LOOP_M = 0.8  # so far back from the farthest point the loop round a cone is as 
 ELSEWHERE_M = 0.85  # at the end from where it began: patients who came back to their chair were within 0.65 m
 TO_SIT_RAD = np.deg2rad(90.0)  # who turns by less sits down sideways
 SEAT_S = 2.0  # a key at the start may be pressed so long after the rise has begun
+TIME_TOLERANCE_S = 1.0  # of a set time that a key ends: nobody presses to the tenth
 DISTANCE_TOLERANCE_M = 2.0  # of a distance that was entered: a step or two
 
 
@@ -48,6 +50,18 @@ def length_reasons(found_m: float, course_m: float) -> tuple[NotValid, ...]:
     if not abs(found_m - course_m) > tolerance_m(course_m):
         return ()
     return (NotValid.COURSE_LONGER,) if found_m > course_m else (NotValid.COURSE_SHORTER,)
+
+
+def check_whole(definition: Definition, seat: SeatMotions, span_s: tuple[float, float]) -> tuple[NotValid, ...]:
+    """Why a test that a key ended is not whole: another time than the set one, or fewer rises than it takes."""
+    start_s, end_s = span_s
+    reasons = []
+    if definition.duration_s is not None and abs(end_s - start_s - definition.duration_s) > TIME_TOLERANCE_S:
+        reasons.append(NotValid.OTHER_TIME)
+    rises = sum(start_s - SEAT_S <= one.left_seat_s < end_s for one in seat.rises)
+    if definition.rises > 1 and seat.has_thighs and rises < definition.rises:
+        reasons.append(NotValid.FEWER_RISES)
+    return tuple(reasons)
 
 
 def check_straight(turns: tuple[Turn, ...]) -> tuple[NotValid, ...]:

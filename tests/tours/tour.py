@@ -48,7 +48,7 @@ MANUAL = {  # which stop of a tour becomes which picture
         "27-home-again": "home",
     },
     "bench": {"34-b-against-a": "bench"},
-    "timed": {"51c-running": "timed-test", "52e-included": "timed-result"},
+    "timed": {"51c-running": "timed-test"},
 }
 PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool", "convert": "imagemagick"}  # Debian's packages
 SCREEN = "2000x1200x24"

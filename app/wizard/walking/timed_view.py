@@ -21,7 +21,7 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.body import name_of
 from app.wording.numbers import clock
 from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
-from app.wording.translation import capitalised, figure_text, joined, short_figure, tr
+from app.wording.translation import capitalised, figure_text, joined, short_figure, tr, tr_n
 from core.body import Side
 from core.timed.live import LiveReadout
 from core.timed.protocols import DEFINITIONS, TimedProtocol, course_of
@@ -324,6 +324,7 @@ def _middle_words(state: TimedViewState) -> str:
         return tr("{course} m, turn, {course} m back").format(course=course) if not turns else tr("turned")
     laps = tr("Lap {lap}").format(lap=turns + 1)
     if definition.duration_s is None:
-        return laps
+        count = len(state.readout.steps)
+        return tr_n("{count} step", "{count} steps", count).format(count=count)
     left_s = max(0, math.ceil(definition.duration_s - state.elapsed_s))
     return tr("{lap}, {minutes}:{seconds:02d} to go").format(lap=laps, minutes=left_s // 60, seconds=left_s % 60)

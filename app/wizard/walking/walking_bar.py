@@ -14,8 +14,8 @@ from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_notice import asked_walk
 from app.wizard.walking.walk_rows import ongoing_walk
 from app.wizard.walking.walk_start import WalkStart
-from app.wording.timed_tests import name_of_test
-from app.wording.translation import capitalised, tr, within_sentence
+from app.wording.timed_tests import name_of_test, name_within_sentence
+from app.wording.translation import capitalised, tr
 from core.timed.protocols import DEFINITIONS, course_of
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ class WalkingBar:
         if asked_walk(recordings) is not None:
             words = tr("Include, start next")
             if test := self._timed.planned:
-                words = tr("Include, start {test}").format(test=within_sentence(name_of_test(test.protocol)))
+                words = tr("Include, start {test}").format(test=name_within_sentence(test.protocol))
             both = replace(start, text=words, is_requested=False)
             return BarState(primary=both, note=missing or self._timed.next_words(label))
         if any(recording.details.is_kept for recording in recordings.walks):
@@ -186,7 +186,7 @@ class WalkingBar:
     def _test_words(self) -> str:
         """What the key starts where a timed test is chosen; empty where none is."""
         test = self._timed.planned
-        return "" if test is None else tr("Start {test}").format(test=within_sentence(name_of_test(test.protocol)))
+        return "" if test is None else tr("Start {test}").format(test=name_within_sentence(test.protocol))
 
     def _armed(self, label: str) -> str:
         """Which test the next walk is, or that it is none: T chooses one also where no chooser is in sight."""

@@ -18,7 +18,7 @@ from app.widgets.table_cells import TextCell
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResultView
 from core.results import RecordingAnalysis
 from core.session import RecordingKind
-from core.timed.found import Part
+from core.timed.found import PartOfUpAndGo
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, CourseKind, Standing, TimedCourse
 from devices.simulation.walker_body import UpAndGo
@@ -45,12 +45,12 @@ WALKED = (
     TimedCourse(CourseKind.TWO_MINUTES, 7, lap_m=10.0, name="walk 5"),
 )
 PARTS = {
-    Part.RISE: "Rise",
-    Part.WALK_OUT: "Walk out",
-    Part.TURN: "Turn",
-    Part.WALK_BACK: "Walk back",
-    Part.TURN_TO_SIT: "Turn to sit",
-    Part.SIT: "Sit down",
+    PartOfUpAndGo.RISE: "Rise",
+    PartOfUpAndGo.WALK_OUT: "Walk out",
+    PartOfUpAndGo.TURN: "Turn",
+    PartOfUpAndGo.WALK_BACK: "Walk back",
+    PartOfUpAndGo.TURN_TO_SIT: "Turn to sit",
+    PartOfUpAndGo.SIT: "Sit down",
 }
 
 
@@ -115,7 +115,7 @@ def walks(visit: AnalysedVisit) -> Iterator[RecordingAnalysis]:
 
 def test_the_six_parts_of_an_up_and_go_are_the_same_everywhere(qtbot: QtBot, visit: AnalysedVisit) -> None:
     in_files = {row["part"]: seconds(row["time_s"]) for row in in_file(visit, "walk 1") if row["row"] == "part"}
-    assert list(in_files) == [str(part) for part in Part]
+    assert list(in_files) == [str(part) for part in PartOfUpAndGo]
     shown = rows_of(on_screen(qtbot, visit, "walk 1").parts)
     printed = on_paper(visit)[1]["Timed Up and Go: sections"]
     for part, name in PARTS.items():
