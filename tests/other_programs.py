@@ -1,8 +1,8 @@
 """Programs of other authors that tests ask what our files hold. They need not be in the environment of the tests.
 
 `GAITWRIGHT_OTHER_PYTHON` names a Python that has those of them that bring another Qt or other versions than ours:
-`uv venv PLACE && uv pip install --python PLACE/bin/python kineticstoolkit pyomeca`. `NODE_PATH` names the folder of
-Node's packages: `npm install --prefix PLACE fhir` and PLACE/node_modules.
+`uv venv PLACE && uv pip install --python PLACE/bin/python kineticstoolkit pyomeca bids-validator-deno`.
+`NODE_PATH` names the folder of Node's packages: `npm install --prefix PLACE fhir` and PLACE/node_modules.
 """
 
 import json

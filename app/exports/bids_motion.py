@@ -1,10 +1,10 @@
-"""BIDS-Motion data of what the sensors measured: a recording's samples, their channels and settings.
+"""BIDS-Motion data of what the sensors measured: a recording's samples, their channels and settings, and its events.
 
 As the Brain Imaging Data Structure has it for motion: one table without heads for each tracking system, which is all
 sensors of one time base, with the latencies from the start of the recording in its first column. Samples and times are
 those of the recording to their last digit; what is missing is n/a. Two columns of ours say what BIDS has no word for,
-the sensor's number and what its rates are, and a setting states what is simulated: `gaitwright import` gives back the
-same recording.
+the sensor's number and what its rates are; two settings state what is simulated, and that the latencies of several
+tracking systems have one zero: `gaitwright import` gives back the same recording. Events have the same zero.
 """
 
 import json
@@ -18,9 +18,11 @@ import numpy as np
 
 from app.exports.figures import SIMULATED, software
 from app.storage.pseudonyms import AGE, age_in_words
+from app.summary.events import events_of
 from app.wording.translation import PURPOSE, tr
-from core.body import Site
+from core.body import Side, Site
 from core.prosthesis import prosthesis_table
+from core.results import Analysis
 from core.samples import FloatArray, ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 
@@ -33,10 +35,10 @@ TASKS = {
 }
 SEXES = {"female": "F", "male": "M", "other": "O"}
 OLDEST_YEARS = 89  # BIDS has one age for all from here on
-UNKNOWN_START = "1900-01-01T00:00:00"  # BIDS takes years before 1926 for moved ones
 MISSING = "n/a"
 DERIVED = "derived"
-IS_SIMULATED = "Simulated"  # of our own, as BIDS has no word for it: an import keeps what nobody was measured for apart
+# of our own, as BIDS has no words for them: an import keeps what nobody was measured for apart, and systems together
+IS_SIMULATED, IS_COMMON_START = "Simulated", "LatenciesFromOneStart"
 AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
 COLUMNS = ("name", "component", "type", "tracked_point", "units", "reference_frame", "sensor", "rate_kind")
 ABOUT_COLUMNS = {
@@ -60,6 +62,20 @@ ABOUT_COLUMNS = {
         },
     },
 }
+ABOUT_EVENTS = {
+    "onset": {"Description": "On the clock of the latencies, from the start of the recording.", "Units": "s"},
+    "duration": {"Description": "Events are instants.", "Units": "s"},
+    "trial_type": {
+        "Description": "The event of a foot, found from its sensor.",
+        "Levels": {
+            "initial_contact": "The foot comes to the floor.",
+            "full_contact": "The whole foot comes to the floor.",
+            "heel_rise": "The heel leaves the floor.",
+            "toe_off": "The foot leaves the floor.",
+        },
+    },
+    "side": {"Description": "Of which foot.", "Levels": {side: f"The {side} foot." for side in Side}},
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +86,7 @@ class BidsChannel:
     values: FloatArray
 
 
-def write_bids(session: Session, folder: Path) -> str:
+def write_bids(session: Session, analysis: Analysis, folder: Path) -> str:
     """Write the kept recordings as a BIDS dataset of one participant; give why nothing was written, else ""."""
     held = [one for one in session.recordings if one.is_kept and any(len(block) for block in one.imu.values())]
     if not held:
@@ -80,10 +96,14 @@ def write_bids(session: Session, folder: Path) -> str:
     motion.mkdir(parents=True)
     scans = ["filename\tacq_time"]
     runs: dict[RecordingKind, int] = {}
+    events = {one.name: events_of(one) for one in analysis.recordings}
     for recording in held:
         run = runs[recording.kind] = runs.get(recording.kind, 0) + 1
+        task = f"{participant}_task-{TASKS[recording.kind]}"
+        if found := events.get(recording.name):
+            _write_events(found, motion / f"{task}_run-{run}_events.tsv")
         for system, sites in _systems(recording).items():
-            base = f"{participant}_task-{TASKS[recording.kind]}_tracksys-{system}_run-{run}"
+            base = f"{task}_tracksys-{system}_run-{run}"
             _write_system(session, recording, sites, motion / base, system)
             scans.append(f"motion/{base}_motion.tsv\t{_acquired(recording.started)}")
     (folder / participant / f"{participant}_scans.tsv").write_text("\n".join([*scans, ""]), encoding="utf-8")
@@ -94,6 +114,7 @@ def write_bids(session: Session, folder: Path) -> str:
             "Name": f"{SIMULATED if session.is_simulated else 'A session with inertial sensors'} ({participant})",
             "BIDSVersion": BIDS_VERSION,
             "DatasetType": "raw",
+            "Authors": [session.operator or MISSING],
             "GeneratedBy": [{"Name": software()}],
         },
     )
@@ -104,6 +125,12 @@ def write_bids(session: Session, folder: Path) -> str:
     ]
     (folder / "README").write_text("\n".join([*stated, ""]), encoding="utf-8")
     return ""
+
+
+def _write_events(events: Sequence[tuple[float, Side, str]], path: Path) -> None:
+    lines = [f"{time_s:.5f}\t0\t{event}\t{side}" for time_s, side, event in events]
+    path.write_text("\n".join(["\t".join(ABOUT_EVENTS), *lines, ""]), encoding="utf-8")
+    _write_json(path.with_suffix(".json"), ABOUT_EVENTS)
 
 
 def _systems(recording: Recording) -> dict[str, list[Site]]:
@@ -191,6 +218,8 @@ def _settings(
     }
     if session.is_simulated:
         settings[IS_SIMULATED] = True
+    if len(_systems(recording)) > 1:
+        settings[IS_COMMON_START] = True
     settings |= {f"{kind}ChannelCount": kinds.count(kind) for kind in dict.fromkeys(kinds)}
     if len(models) == 1 and (model := next(iter(models))):
         settings["ManufacturersModelName"] = model
@@ -235,11 +264,11 @@ def _prostheses(patient: Patient) -> dict[str, str]:
 
 
 def _acquired(started: str) -> str:
-    """A start as BIDS writes it, without an offset from UTC."""
+    """A start as BIDS writes it, without an offset from UTC; n/a where it is not known."""
     try:
         moment = datetime.fromisoformat(started)
     except ValueError:
-        return UNKNOWN_START
+        return MISSING
     if moment.tzinfo is None:
         return moment.isoformat()
     return moment.astimezone(UTC).replace(tzinfo=None).isoformat() + "Z"

@@ -165,7 +165,7 @@ def _write_format(session: Session, analysis: Analysis, required: Format, folder
         lines = write_orientations(session, analysis, folder, f"orientations.{required}")
         return [f"{required}, {line}" for line in lines]
     elif required is Format.BIDS:
-        why = write_bids(session, folder / FOLDER)
+        why = write_bids(session, analysis, folder / FOLDER)
         return [f"{required}: {why}"] if why else []
     else:
         if required is Format.C3D:

@@ -5,8 +5,8 @@ point and in which unit; `*_motion.json` has the sampling frequency. The files b
 has it; which they are is found by the table of channels. Times are those of a LATENCY channel, in seconds from
 `acq_time` in `*_scans.tsv`, else even. Settings that BIDS lets stand in a folder above are not looked for there.
 
-Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are. A
-setting of ours states that nobody was measured.
+Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are.
+Settings of ours state that nobody was measured, and that the latencies of all tracking systems have one zero.
 Held against the table of channels of a public set of a commercial system, and against our own exports.
 """
 
@@ -242,9 +242,13 @@ def _turns_gravity_up(q: FloatArray, acc_m_s2: FloatArray) -> bool:
 
 
 def _on_one_clock(systems: Sequence[MotionSystem]) -> Iterator[ImportedSensor]:
-    """The sensors of all systems, each brought to the start of the first by the times of acquisition."""
+    """The sensors of all systems, each brought to the start of the first by the times of acquisition.
+
+    Our own exports state that all latencies have one zero, as recordings without a known start have, too.
+    """
     known = [system for system in systems if system.sensors]
-    starts = [_moment(system.started) for system in known]
+    is_common = all(system.is_common_start for system in known)
+    starts = [0.0 if is_common else _moment(system.started) for system in known]
     first = min((start for start in starts if start is not None), default=None)
     names = [sensor.name for system in known for sensor in system.sensors]
     for system, start in zip(known, starts, strict=True):

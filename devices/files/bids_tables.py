@@ -20,7 +20,7 @@ SCANS = "*_scans.tsv"
 MOST_SCANS = 10
 REQUIRED = ("name", "type", "tracked_point", "component", "units")  # columns of a table of channels
 SENSOR, RATE_KIND = "sensor", "rate_kind"  # columns of ours
-IS_SIMULATED = "Simulated"  # a setting of ours
+IS_SIMULATED, IS_COMMON_START = "Simulated", "LatenciesFromOneStart"  # settings of ours
 MISSING = frozenset(("n/a", "nan", ""))
 LONGEST_LINE = 1_000_000  # bytes
 MOST_SETTINGS = 4_000_000  # bytes
@@ -54,6 +54,7 @@ class MotionSystem:
     started: str = ""
     is_simulated: bool = False
     of_rows: tuple[Finding, ...] = ()
+    is_common_start: bool = False
     sensors: list[ImportedSensor] = field(default_factory=list)
 
 
@@ -124,6 +125,7 @@ def read_system(base: Path) -> MotionSystem:
         started=_acquired(base),
         is_simulated=settings.get(IS_SIMULATED) is True,
         of_rows=of_rows,
+        is_common_start=settings.get(IS_COMMON_START) is True,
     )
 
 

@@ -1,5 +1,6 @@
 """Tests that a session leaves as BIDS-Motion has it, and comes back to the last digit."""
 
+import csv
 import json
 import re
 from collections.abc import Sequence
@@ -12,17 +13,20 @@ import pytest
 
 from app.exports.bids_motion import write_bids
 from app.exports.exports import Format, export_from_folder
+from app.exports.result_folder import write_results
 from core.body import Site
-from core.results import Analysis
+from core.results import Analysis, Method
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from core.session import Recording, RecordingKind, Session
 from devices.files.bids_motion import bids_motion_trial
 from devices.files.formats import recognised
 from devices.files.imports import ImportedFiles
 from devices.files.site_names import site_of_name
+from tests.other_programs import ask_python
 from tests.swinging_sensor import swinging_sensor
 from tests.trials_of_files import import_with
 
+NOTHING = Analysis(Method.ROBUST, False, (), ())
 PLACES = {Site.LEFT_THIGH: "LeftThigh", Site.LEFT_SHANK: "LeftShank", Site.RIGHT_FOOT: "RightFoot"}
 
 
@@ -63,7 +67,7 @@ def test_every_recording_of_a_visit_comes_back_to_the_last_digit(
     visit: tuple[Session, Analysis], tmp_path: Path
 ) -> None:
     session = visit[0]
-    write_bids(session, tmp_path / "bids")
+    write_bids(*visit, tmp_path / "bids")
     found = tables(tmp_path / "bids", "_motion.tsv")
     assert len(found) == len(session.recordings) == 3
     for recording, task in zip(session.recordings, ("standing", "freeMotion", "walking"), strict=True):
@@ -93,7 +97,7 @@ def test_gaps_orientation_field_and_derived_rates_come_back(tmp_path: Path) -> N
         Site.LEFT_THIGH: replace(thigh, acc_m_s2=acc),
         Site.LEFT_SHANK: replace(block("B", 0.3, is_rate_derived=True).select(rows)),
     }
-    write_bids(session_of(imu), tmp_path / "bids")
+    write_bids(session_of(imu), NOTHING, tmp_path / "bids")
     (path,) = tables(tmp_path / "bids", "_motion.tsv")
     imported = back(tmp_path, [path], list(imu))
     for site, was in imu.items():
@@ -111,7 +115,7 @@ def test_sensors_of_other_times_are_tracking_systems_of_their_own_that_come_back
         Site.RIGHT_FOOT: replace(late, time_s=late.time_s * 1.0001 + 0.123),
         Site.LEFT_SHANK: block("B", 0.3),
     }
-    write_bids(session_of(imu), tmp_path / "bids")
+    write_bids(session_of(imu), NOTHING, tmp_path / "bids")
     found = tables(tmp_path / "bids", "_motion.tsv")
     assert ["_tracksys-imu1_" in one.name for one in found] == [True, False]
     assert ["_tracksys-imu2_" in one.name for one in found] == [False, True]
@@ -124,7 +128,7 @@ def test_sensors_of_other_times_are_tracking_systems_of_their_own_that_come_back
 
 def test_tables_are_as_bids_has_them(tmp_path: Path) -> None:
     folder = tmp_path / "bids"
-    write_bids(session_of({Site.LEFT_THIGH: block("A"), Site.LEFT_SHANK: block("B")}), folder)
+    write_bids(session_of({Site.LEFT_THIGH: block("A"), Site.LEFT_SHANK: block("B")}), NOTHING, folder)
     (motion,), (channels,), (settings,) = (
         tables(folder, ending) for ending in ("_motion.tsv", "_channels.tsv", "_motion.json")
     )
@@ -151,13 +155,84 @@ def test_tables_are_as_bids_has_them(tmp_path: Path) -> None:
     assert all(re.fullmatch(labels, path.name) for path in folder.glob("sub-*/motion/*"))
 
 
-def test_a_start_that_is_not_known_is_before_all_real_ones(tmp_path: Path) -> None:
+def test_a_start_that_is_not_known_is_stated_so(tmp_path: Path) -> None:
     session = session_of({Site.LEFT_THIGH: block("A"), Site.LEFT_SHANK: block("B")})
     session = replace(session, recordings=(replace(session.recordings[0], started=""),))
-    write_bids(session, tmp_path / "bids")
+    write_bids(session, NOTHING, tmp_path / "bids")
     (scan,) = cells(next((tmp_path / "bids").glob("sub-*/*_scans.tsv")))
-    assert scan["acq_time"] == "1900-01-01T00:00:00"
+    assert scan["acq_time"] == "n/a"
     assert bids_motion_trial(tables(tmp_path / "bids", "_motion.tsv")).started == ""
+
+
+def test_systems_without_a_known_start_come_back_together(tmp_path: Path) -> None:
+    late = block("C", 0.5)
+    imu = {Site.LEFT_THIGH: block("A"), Site.RIGHT_FOOT: replace(late, time_s=late.time_s * 1.0001 + 0.123)}
+    session = session_of(imu)
+    write_bids(replace(session, recordings=(replace(session.recordings[0], started=""),)), NOTHING, tmp_path / "bids")
+    found = tables(tmp_path / "bids", "_motion.tsv")
+    imported = back(tmp_path, found, list(imu))
+    assert imported.findings == ()
+    for site, was in imu.items():
+        same(imported.imu[site].time_s, was.time_s)
+    for settings in tables(tmp_path / "bids", "_motion.json"):  # of another program nothing ties them
+        text = settings.read_text(encoding="utf-8")
+        assert "LatenciesFromOneStart" in text
+        settings.write_text(text.replace('"LatenciesFromOneStart": true', '"LatenciesFromOneStart": "?"'))
+    assert {one.key for one in back(tmp_path, found, list(imu)).findings} == {"not_synchronised"}
+
+
+def test_the_events_of_a_walk_are_on_the_clock_of_its_samples(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = visit
+    (tmp_path / "results").mkdir()
+    write_results(session, analysis, tmp_path / "results")
+    write_bids(session, analysis, tmp_path / "bids")
+    (events,) = tables(tmp_path / "bids", "_events.tsv")  # nobody steps while standing or in free motion
+    assert "_task-walking_run-1_events.tsv" in events.name
+    (written,) = (tmp_path / "results").glob("walk*/events.csv")
+    with written.open(encoding="utf-8", newline="") as file:
+        expected = list(csv.DictReader(file))
+    rows = cells(events)
+    assert [(float(row["onset"]), row["trial_type"], row["side"]) for row in rows] == [
+        (float(row["time_s"]), row["event"], row["side"]) for row in expected
+    ]
+    assert {row["duration"] for row in rows} == {"0"}
+    about = json.loads(events.with_suffix(".json").read_text(encoding="utf-8"))
+    assert set(about["trial_type"]["Levels"]) == {row["trial_type"] for row in rows}
+    assert set(about) == set(rows[0])
+    (motion,) = (one for one in tables(tmp_path / "bids", "_motion.tsv") if "_task-walking_" in one.name)
+    latencies = [float(line.split("\t")[0]) for line in motion.read_text(encoding="utf-8").splitlines()]
+    assert latencies[0] <= float(rows[0]["onset"]) <= float(rows[-1]["onset"]) <= latencies[-1]
+    assert recognised([motion]) == "bids-motion"
+
+
+@pytest.mark.parametrize(("operator", "author"), [("TM", "TM"), ("", "n/a")])
+def test_the_author_is_who_measured_where_that_is_stated(tmp_path: Path, operator: str, author: str) -> None:
+    write_bids(session_of({Site.LEFT_THIGH: block("A")}, operator=operator), NOTHING, tmp_path / "bids")
+    description = json.loads((tmp_path / "bids" / "dataset_description.json").read_text(encoding="utf-8"))
+    assert description["Authors"] == [author]
+
+
+VALIDATOR = """
+import json, subprocess, sys
+from pathlib import Path
+program = Path(sys.executable).with_name("bids-validator-deno")
+done = subprocess.run([str(program), "--format", "json", sys.argv[1]], capture_output=True, text=True)
+print(json.dumps(json.loads(done.stdout)["issues"]["issues"]))
+"""
+
+
+@pytest.mark.endurance
+def test_the_validator_of_bids_finds_no_error(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    export_from_folder(*visit, [Format.BIDS], tmp_path)
+    issues = ask_python("bids-validator-deno", VALIDATOR, tmp_path / "bids")
+    assert [one for one in issues if one["severity"] == "error"] == []
+    codes = {one["code"] for one in issues}
+    assert "NO_AUTHORS" not in codes
+    (channels,) = (one for one in tables(tmp_path / "bids", "_channels.tsv") if "_task-walking_" in one.name)
+    channels.unlink()  # which it does find
+    assert [
+        one for one in ask_python("bids-validator-deno", VALIDATOR, tmp_path / "bids") if one["severity"] == "error"
+    ]
 
 
 def test_what_was_discarded_or_is_empty_does_not_leave(tmp_path: Path) -> None:
@@ -165,7 +240,7 @@ def test_what_was_discarded_or_is_empty_does_not_leave(tmp_path: Path) -> None:
     (walk,) = session.recordings
     nothing = replace(walk, name="walk 3", imu={Site.LEFT_THIGH: walk.imu[Site.LEFT_THIGH].select(slice(0))})
     session = replace(session, recordings=(replace(walk, name="walk 2", is_kept=False), walk, nothing))
-    write_bids(session, tmp_path / "bids")
+    write_bids(session, NOTHING, tmp_path / "bids")
     assert len(tables(tmp_path / "bids", "_motion.tsv")) == 1
 
 

@@ -59,6 +59,11 @@ PROGRAMS = {
         "test_workbook.test_libreoffice_opens_it_as_it_is_meant",
         "test_workbook.test_libreoffice_prints_it_on_pages_that_name_the_patient",
     ),
+    ("bids", "bids-validator-deno"): (
+        "bids-validator-deno",
+        "test_bids_motion.test_the_validator_of_bids_finds_no_error",
+        "test_bids_motion.test_every_recording_of_a_visit_comes_back_to_the_last_digit",
+    ),
 }
 
 

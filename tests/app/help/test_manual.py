@@ -175,7 +175,7 @@ def test_german_keeps_to_the_words_of_the_clinic_and_writes_figures_with_a_comma
     prose = re.sub(r"„[^“]*“", "", text.replace("![", "["))  # what is quoted is on the screen
     assert FORBIDDEN_IN_GERMAN.findall(prose) == []
     programs = "Python|LogAndStream|Bluetooth|Version|doi|OpenSim|ezc3d|c3d|kineticstoolkit|pyomeca"
-    programs += "|fhir-resources|fhir|openpyxl|calamine|LibreOffice"
+    programs += "|fhir-resources|fhir|openpyxl|calamine|LibreOffice|deno"
     without_versions = re.sub(rf"({programs}) [\d./s-]+|(\d+\.){{3}}\d+", "", prose)
     assert re.findall(r"\d\.\d", without_versions) == []
 
