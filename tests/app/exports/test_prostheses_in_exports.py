@@ -48,7 +48,7 @@ def test_the_summary_ends_with_what_was_taken_for_true(stated: tuple[Session, An
 def test_a_participant_has_a_column_for_each_part_that_is_stated(
     stated: tuple[Session, Analysis], tmp_path: Path
 ) -> None:
-    write_bids(stated[0], tmp_path)
+    write_bids(*stated, tmp_path)
     names, values = ((line.split("\t")) for line in (tmp_path / "participants.tsv").read_text().splitlines())
     row = dict(zip(names, values, strict=True))
     assert names[-5:] == [
@@ -96,7 +96,8 @@ def test_nothing_stated_leaves_every_file_as_it_was(
     session = replace(visit[0], patient=replace(SIDES, prostheses=prostheses))
     analysis = analyse(session)
     assert "prostheses" not in summarise(analysis)
-    assert "Device" not in {entry["resource"]["resourceType"] for entry in bundle(session, analysis)["entry"]}
-    write_bids(session, tmp_path)
+    kinds = [entry["resource"]["resourceType"] for entry in bundle(session, analysis)["entry"]]
+    assert kinds.count("Device") == 1  # Gaitwright
+    write_bids(session, analysis, tmp_path)
     assert (tmp_path / "participants.tsv").read_text().splitlines()[0].endswith("prosthetic_side")
     assert not [name for name, _ in what_leaves(session) if name.startswith("prosthesis")]
