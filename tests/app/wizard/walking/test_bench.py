@@ -183,7 +183,7 @@ def test_what_was_set_at_the_foot_is_stated_before_what_belongs_to_the_answer() 
         left = one.gait[Side.LEFT]
         left.parameters["shank_to_foot_in_swing_rad"] = np.full(len(left.strides), np.deg2rad(swing_deg))
     recordings = (WALKED[0], recording(2, "B", plantar))
-    every = [SimpleNamespace(details=one) for one in recordings]
+    every = [SimpleNamespace(details=one, read_back=None) for one in recordings]
     visit.recordings = SimpleNamespace(every=every, walks=every)
     visit.evaluation.session = Session(recordings)
     visit.evaluation.analysis = replace(visit.evaluation.analysis, recordings=walks)

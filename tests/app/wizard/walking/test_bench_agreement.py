@@ -44,6 +44,7 @@ OF_SENTENCE = {  # what its words are about: the row of the table
     r": shank forward tilt, foot flat is ": "Shank forward tilt, foot flat",
     r": knee extended before contact is ": "Knee extended before contact (% gait cycle)",
     r": least knee flexion, late swing is ": "Least knee flexion, late swing",
+    r": foot-to-shank angle, swing is ": "Foot-to-shank angle, swing",
 }
 NUMBER = re.compile(r"[−+]?\d+(?:\.\d+)?")
 ROW = re.compile(r"^(?P<mark>[○●] )?(?P<change>[−+]?[\d.]+)°?(?: ±(?P<error>[\d.]+)°?†?)?$")
