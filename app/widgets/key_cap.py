@@ -12,11 +12,13 @@ HEIGHT, LEAST, AROUND = 22, 24, 12
 
 
 class KeyCap(Painted):
-    """Screen readers have the key with the control, which names it."""
+    """`words` state what the key does, for screen readers and under the mouse; none where its control names it."""
 
-    def __init__(self, key: str) -> None:
+    def __init__(self, key: str, words: str = "") -> None:
         super().__init__()
         self._key = key
+        self.setAccessibleName(words)
+        self.setToolTip(words)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:

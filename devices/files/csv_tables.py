@@ -38,7 +38,7 @@ from devices.files.table_choices import (
     TableChoices,
     column_named,
 )
-from devices.files.table_layout import Layout, fingerprint_of, layout_of, refuse_twice
+from devices.files.table_layout import TableLayout, fingerprint_of, layout_of, refuse_twice
 from devices.files.tables import NO_VALUE, Table, is_value, read_rows
 from devices.files.text_times import is_time, seconds_of
 from devices.files.trial import ImportedTrial
@@ -151,19 +151,19 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
     return _by_sensor(named, table, sensor) if sensor else [named]
 
 
-def _sensors_in(layout: Layout, path: Path) -> tuple[SensorColumns, ...]:
+def _sensors_in(layout: TableLayout, path: Path) -> tuple[SensorColumns, ...]:
     """The sensors by the names of the columns, else their halves."""
     whole = sensor_columns(layout.names, layout.units)
     return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
 
 
-def columns_in(layout: Layout, choices: TableChoices) -> tuple[SensorColumns, ...]:
+def columns_in(layout: TableLayout, choices: TableChoices) -> tuple[SensorColumns, ...]:
     """The sensors of a table, as somebody states them or by the names of the columns; raises FileRefusedError."""
     stated = _stated_columns(layout, choices, layout.path.name)
     return _sensors_in(layout, layout.path) if stated is None else (stated,)
 
 
-def _stated_columns(layout: Layout, choices: TableChoices, where: str) -> SensorColumns | None:
+def _stated_columns(layout: TableLayout, choices: TableChoices, where: str) -> SensorColumns | None:
     """The columns of the one sensor that somebody states; None where nobody does."""
     if not choices.acc and not choices.gyr:
         return None
@@ -177,7 +177,7 @@ def _stated_columns(layout: Layout, choices: TableChoices, where: str) -> Sensor
     return SensorColumns("", acc, gyr, time=by_name.time, counter=by_name.counter)
 
 
-def _three(layout: Layout, stated: Sequence[str], where: str) -> tuple[str, ...]:
+def _three(layout: TableLayout, stated: Sequence[str], where: str) -> tuple[str, ...]:
     names = tuple(_column(layout, one, where) for one in stated)
     if len(names) != 3 or len(set(names)) != 3:
         raise FileRefusedError(
@@ -190,7 +190,7 @@ def _three(layout: Layout, stated: Sequence[str], where: str) -> tuple[str, ...]
     return names
 
 
-def _column(layout: Layout, stated: str, where: str) -> str:
+def _column(layout: TableLayout, stated: str, where: str) -> str:
     name = column_named(stated, layout.names)
     if name is None:
         raise FileRefusedError(
@@ -203,7 +203,7 @@ def _column(layout: Layout, stated: str, where: str) -> str:
     return name
 
 
-def time_column(layout: Layout, choices: TableChoices, found: Sequence[SensorColumns]) -> str:
+def time_column(layout: TableLayout, choices: TableChoices, found: Sequence[SensorColumns]) -> str:
     """The column of times of all sensors; empty where there is none, or each has its own."""
     if choices.time:
         return "" if choices.time == NONE else _column(layout, choices.time, layout.path.name)
@@ -211,7 +211,7 @@ def time_column(layout: Layout, choices: TableChoices, found: Sequence[SensorCol
     return times.pop() if len(times) == 1 else ""
 
 
-def is_text_time(layout: Layout, time: str, choices: TableChoices) -> bool:
+def is_text_time(layout: TableLayout, time: str, choices: TableChoices) -> bool:
     """Whether a column of times holds texts such as 23:59:59.990."""
     if choices.time_unit:
         return choices.time_unit == CLOCK
@@ -219,7 +219,7 @@ def is_text_time(layout: Layout, time: str, choices: TableChoices) -> bool:
     return bool(cells) and any(is_time(cell) for cell in cells) and not all(map(is_value, cells))
 
 
-def sensor_column(layout: Layout, choices: TableChoices) -> str:
+def sensor_column(layout: TableLayout, choices: TableChoices) -> str:
     """The column that names the sensor of each row; empty where there is none."""
     if choices.sensor:
         return "" if choices.sensor == NONE else _column(layout, choices.sensor, layout.path.name)

@@ -19,7 +19,7 @@ from devices.files.magnitudes import middle_size
 from devices.files.named_columns import GRAVITY_M_S2, LEAST_DOWN, halves_of_table, sensors_of_table
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import CLOCK, COUNT, NONE, PreviewedSensor, TableChoices, TablePreview
-from devices.files.table_layout import Layout, layout_of, lines_of_head
+from devices.files.table_layout import TableLayout, layout_of, lines_of_head
 from devices.files.tables import number_in
 from devices.files.text_times import is_time
 
@@ -70,7 +70,7 @@ def _beginning(name: str, block: ImuBlock, rate_hz: float | None, findings: Sequ
     return PreviewedSensor(name, first.time_s, first.acc_m_s2, first.gyr_rad_s, rate_hz, length_s, tuple(findings))
 
 
-def _found(layout: Layout, choices: TableChoices, sensors: Sequence[PreviewedSensor]) -> TableChoices:
+def _found(layout: TableLayout, choices: TableChoices, sensors: Sequence[PreviewedSensor]) -> TableChoices:
     """Every choice as it is in force."""
     try:
         known = columns_in(layout, choices)
@@ -108,7 +108,7 @@ def _understood(sensors: Sequence[PreviewedSensor]) -> Mapping[str, float | int 
     return next((one.numbers for one in findings if one.key == "columns_understood"), {})
 
 
-def _with_guesses(layout: Layout, stated: TableChoices) -> TableChoices:
+def _with_guesses(layout: TableLayout, stated: TableChoices) -> TableChoices:
     """What somebody states, and what values show of columns that no name explains."""
     try:
         if stated.acc or stated.gyr or columns_in(layout, stated):
@@ -138,7 +138,7 @@ def _with_guesses(layout: Layout, stated: TableChoices) -> TableChoices:
     )
 
 
-def _numbers(layout: Layout) -> FloatArray:
+def _numbers(layout: TableLayout) -> FloatArray:
     """(n, columns) numbers of the first rows, NaN where a cell is none."""
 
     def number(cell: str) -> float:
@@ -152,7 +152,7 @@ def _numbers(layout: Layout) -> FloatArray:
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def _is_time_text(layout: Layout, name: str) -> bool:
+def _is_time_text(layout: TableLayout, name: str) -> bool:
     cells = [cell for cell in layout.cells(name) if cell]
     return bool(cells) and sum(map(is_time, cells)) >= MOSTLY * len(cells)
 

@@ -13,6 +13,7 @@ from app.theme.ground import Ground, set_ground
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.card import Card
 from app.widgets.chip import Chip
+from app.widgets.key_cap import KeyCap
 from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText, height_for
@@ -21,11 +22,11 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.badge import BADGE, Badge
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.entry_fields import EntryFields
-from app.wizard.walking.key_cap import CAP, KeyCap
 from app.wording.translation import tr
 from core.body import Side
 
 PADDING, LINE, GAP = 8, 18, 12
+CAP = 20  # of a digit, beside its alignment
 ENTRY_KEY = "C"
 MOST_KEYS = 9  # as many as there are digits
 LEAST_LIST, LEAST_LIST_COMPACT = 88, 56
