@@ -111,7 +111,8 @@ def workbook(session: Session, analysis: Analysis, paper: str = "a4") -> bytes:
         columns |= dict.fromkeys(header)
     add_sheet("Units", ["column", "unit"], ([column, unit] for column in columns if (unit := unit_of(column))))
     findings = ([str(f.severity), f.where, sentence(f)] for f in analysis.findings)
-    add_sheet("Findings", ["severity", "where", "text"], findings)
+    columns_of_findings = ["severity", "where", "text"]
+    add_sheet("Findings", columns_of_findings, findings)
     written = io.BytesIO()
     book.save(written)
     return _without_times(written.getvalue())

@@ -10,6 +10,7 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side, Site
 from core.findings import Finding
 from core.gait.chosen_strides import leave_out
+from core.prosthesis import FootKind, Prosthesis
 from core.results import Method
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
 from core.session import RecordingKind, Session
@@ -332,6 +333,7 @@ CASES: dict[str, Case] = {
     "side_without_strides": Case(one_side_shown),
     "events_from_shank": Case(lambda: walked(sites=(THIGH, SHANK))),
     "prosthetic_toe_off": Case(lambda: walked(prosthetic_side=Side.LEFT)),
+    "foot_against_shank": Case(lambda: walked(prosthetic_side=Side.LEFT, fitted=Prosthesis(foot=FootKind.SACH))),
     "no_mean": Case(lambda: walked(recordings=(Standing(), Walk(strides=3)))),
     "no_spread": Case(lambda: walked(recordings=(Standing(), Walk(strides=6)))),
     "no_spread_of_side": Case(few_on_one_side),

@@ -67,8 +67,8 @@ def every_hint() -> Iterator[Hint]:
     yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)}))
     loose = state(0.4, 4, None, is_closed=True, axis_sd_with_floor_rad=float(np.deg2rad(6.0)))
     for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
-        yield last_hint(motion({joint: loose}), frozenset(Side))
-    yield last_hint(motion({Joint.LEFT_KNEE: loose, Joint.RIGHT_KNEE: loose}), frozenset(Side))
+        yield last_hint(motion({joint: loose}), frozenset(Joint))
+    yield last_hint(motion({Joint.LEFT_KNEE: loose, Joint.RIGHT_KNEE: loose}), frozenset(Joint))
     yield hip_hint()
     for found in ({}, {Joint.LEFT_KNEE: state(9, 40)}):
         yield recorded_hint(motion(found))
