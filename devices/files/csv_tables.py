@@ -38,7 +38,7 @@ from devices.files.table_choices import (
     TableChoices,
     column_named,
 )
-from devices.files.table_layout import Layout, fingerprint_of, layout_of, refuse_twice
+from devices.files.table_layout import TableLayout, fingerprint_of, layout_of, refuse_twice
 from devices.files.tables import NO_VALUE, Table, is_value, read_rows
 from devices.files.text_times import is_time, seconds_of
 from devices.files.trial import ImportedTrial
@@ -98,7 +98,7 @@ def csv_trial(
 ) -> ImportedTrial:
     """Read one trial's sensors; raises FileRefusedError if none can be read.
 
-    `choices`: what is stated of tables by their fingerprints, or of all by "".
+    `choices`: what is stated of tables by their paths or fingerprints, or of all by "".
     """
 
     def read(path: Path) -> list[NamedTable]:
@@ -111,7 +111,7 @@ def choices_for(path: Path, choices: StatedChoices) -> TableChoices | None:
     """What is stated of a file; None where nothing is; raises OSError where it cannot be opened."""
     if not choices or not path.is_file():
         return None
-    return choices.get(fingerprint_of(path)) or choices.get(ALL_TABLES)
+    return choices.get(str(path)) or choices.get(fingerprint_of(path)) or choices.get(ALL_TABLES)
 
 
 def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 0) -> list[NamedTable]:
@@ -127,6 +127,8 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
     time = time_column(layout, choices, found)
     is_text = bool(time) and is_text_time(layout, time, choices)
     sensor = sensor_column(layout, choices)
+    if choices.are_any:
+        _refuse_shared(found, time, sensor, where)
     if choices.time:
         found = tuple(replace(one, time=time, counter="") for one in found)
     numeric = {name for one in found for name in one.names()}
@@ -148,22 +150,22 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
         findings=table.findings,
         stated=found,
     )
-    return _by_sensor(named, table, sensor) if sensor else [named]
+    return _by_sensor(named, table, sensor, is_stated=bool(choices.sensor)) if sensor else [named]
 
 
-def _sensors_in(layout: Layout, path: Path) -> tuple[SensorColumns, ...]:
+def _sensors_in(layout: TableLayout, path: Path) -> tuple[SensorColumns, ...]:
     """The sensors by the names of the columns, else their halves."""
     whole = sensor_columns(layout.names, layout.units)
     return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
 
 
-def columns_in(layout: Layout, choices: TableChoices) -> tuple[SensorColumns, ...]:
+def columns_in(layout: TableLayout, choices: TableChoices) -> tuple[SensorColumns, ...]:
     """The sensors of a table, as somebody states them or by the names of the columns; raises FileRefusedError."""
     stated = _stated_columns(layout, choices, layout.path.name)
     return _sensors_in(layout, layout.path) if stated is None else (stated,)
 
 
-def _stated_columns(layout: Layout, choices: TableChoices, where: str) -> SensorColumns | None:
+def _stated_columns(layout: TableLayout, choices: TableChoices, where: str) -> SensorColumns | None:
     """The columns of the one sensor that somebody states; None where nobody does."""
     if not choices.acc and not choices.gyr:
         return None
@@ -177,7 +179,7 @@ def _stated_columns(layout: Layout, choices: TableChoices, where: str) -> Sensor
     return SensorColumns("", acc, gyr, time=by_name.time, counter=by_name.counter)
 
 
-def _three(layout: Layout, stated: Sequence[str], where: str) -> tuple[str, ...]:
+def _three(layout: TableLayout, stated: Sequence[str], where: str) -> tuple[str, ...]:
     names = tuple(_column(layout, one, where) for one in stated)
     if len(names) != 3 or len(set(names)) != 3:
         raise FileRefusedError(
@@ -190,7 +192,7 @@ def _three(layout: Layout, stated: Sequence[str], where: str) -> tuple[str, ...]
     return names
 
 
-def _column(layout: Layout, stated: str, where: str) -> str:
+def _column(layout: TableLayout, stated: str, where: str) -> str:
     name = column_named(stated, layout.names)
     if name is None:
         raise FileRefusedError(
@@ -203,7 +205,7 @@ def _column(layout: Layout, stated: str, where: str) -> str:
     return name
 
 
-def time_column(layout: Layout, choices: TableChoices, found: Sequence[SensorColumns]) -> str:
+def time_column(layout: TableLayout, choices: TableChoices, found: Sequence[SensorColumns]) -> str:
     """The column of times of all sensors; empty where there is none, or each has its own."""
     if choices.time:
         return "" if choices.time == NONE else _column(layout, choices.time, layout.path.name)
@@ -211,7 +213,20 @@ def time_column(layout: Layout, choices: TableChoices, found: Sequence[SensorCol
     return times.pop() if len(times) == 1 else ""
 
 
-def is_text_time(layout: Layout, time: str, choices: TableChoices) -> bool:
+def _refuse_shared(found: Sequence[SensorColumns], time: str, sensor: str, where: str) -> None:
+    """Refuse a column that is stated to be two things; raises FileRefusedError."""
+    used = [name for one in found for name in (*one.acc, *one.gyr)] + [name for name in (time, sensor) if name]
+    twice = next((name for name in used if used.count(name) > 1), None)
+    if twice is not None:
+        raise FileRefusedError(
+            where,
+            "the column {name} is chosen for two quantities",
+            "Choose another column for one of them",
+            name=quoted(twice),
+        )
+
+
+def is_text_time(layout: TableLayout, time: str, choices: TableChoices) -> bool:
     """Whether a column of times holds texts such as 23:59:59.990."""
     if choices.time_unit:
         return choices.time_unit == CLOCK
@@ -219,7 +234,7 @@ def is_text_time(layout: Layout, time: str, choices: TableChoices) -> bool:
     return bool(cells) and any(is_time(cell) for cell in cells) and not all(map(is_value, cells))
 
 
-def sensor_column(layout: Layout, choices: TableChoices) -> str:
+def sensor_column(layout: TableLayout, choices: TableChoices) -> str:
     """The column that names the sensor of each row; empty where there is none."""
     if choices.sensor:
         return "" if choices.sensor == NONE else _column(layout, choices.sensor, layout.path.name)
@@ -235,11 +250,19 @@ def _stated_units(found: Sequence[SensorColumns], time: str, choices: TableChoic
     return units
 
 
-def _by_sensor(table: NamedTable, read: Table, column: str) -> list[NamedTable]:
-    """The rows of each sensor as a table of its own, where the column names a few."""
+def _by_sensor(table: NamedTable, read: Table, column: str, *, is_stated: bool) -> list[NamedTable]:
+    """The rows of each sensor as a table of its own, where the column names a few; raises FileRefusedError."""
     names = np.array([str(text).strip() for text in read.texts[column]])
     known = [str(name) for name in dict.fromkeys(names.tolist()) if name and name.lower() not in NO_VALUE]
     if not 0 < len(known) <= MOST_SENSORS:
+        if is_stated:
+            raise FileRefusedError(
+                table.where,
+                "the column {name} holds {count} different names of sensors",
+                "Choose the column that names a few sensors, or none",
+                name=quoted(column),
+                count=len(known),
+            )
         return [table]
     return [_rows_of(table, np.flatnonzero(names == name), name) for name in known]
 

@@ -21,7 +21,7 @@ Open = Callable[[], BinaryIO]
 
 
 @dataclass(frozen=True, slots=True)
-class Header:
+class TableHeader:
     """`line`: the number of the last line before the rows; `start`: the rows' first byte. `decimal`: of their numbers.
 
     `before`: the lines above the header, as they are.
@@ -43,7 +43,7 @@ def read_header(
     delimiters: str = ",",
     header_names: str = "",
     has_units: bool = False,
-) -> Header:
+) -> TableHeader:
     """Find the header; raises FileRefusedError.
 
     It is the first line that holds `header_names`, is not empty, and does not begin with `comment`; a line of units
@@ -70,7 +70,7 @@ def read_header(
         file.seek(start)
         if rows and all(len(row) == len(names) + 1 and not row[-1].strip() for row in rows):
             names.append(f"{UNNAMED} {len(names) + 1}")  # a delimiter follows the last cell of each row
-        return Header(tuple(names), delimiter, number, start, decimal_of(rows), tuple(before))
+        return TableHeader(tuple(names), delimiter, number, start, decimal_of(rows), tuple(before))
     raise FileRefusedError(where, "the file has no header line", COPY_AGAIN)
 
 

@@ -23,8 +23,8 @@ from devices.files.table_header import (
     COPY_AGAIN,
     CORRECT_IT,
     UNNAMED,
-    Header,
     Open,
+    TableHeader,
     cells_of,
     read_header,
     refuse_twice,
@@ -131,7 +131,13 @@ def read_csv(
 
 
 def read_rows(
-    opened: Open, where: str, header: Header, numeric: Collection[str], *, kept: Collection[str], is_ours: bool = False
+    opened: Open,
+    where: str,
+    header: TableHeader,
+    numeric: Collection[str],
+    *,
+    kept: Collection[str],
+    is_ours: bool = False,
 ) -> Table:
     """Read the rows below a header as `read_csv` does; of other columns those that are to be `kept` as texts."""
     required = [name for name in header.names if name in kept or name in numeric]
@@ -220,7 +226,7 @@ def header_of(
     return [line.removeprefix(comment or "").strip() for line in header.before], list(header.names)
 
 
-def _read_body(file: BinaryIO, header: Header, required: list[str], numeric: Collection[str]) -> Any:
+def _read_body(file: BinaryIO, header: TableHeader, required: list[str], numeric: Collection[str]) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
     import pyarrow.csv  # as above
 
@@ -260,7 +266,7 @@ def _is_open(file: BinaryIO, start: int) -> bool:
     return file.read(1) not in (b"\n", b"\r")
 
 
-def _lines(opened: Open, header: Header, dropped: Collection[int] = ()) -> Iterator[tuple[int, bytes]]:
+def _lines(opened: Open, header: TableHeader, dropped: Collection[int] = ()) -> Iterator[tuple[int, bytes]]:
     """Number and bytes of every line after the header that is neither empty nor dropped."""
     with opened() as file:
         file.seek(header.start)
@@ -277,7 +283,9 @@ class _Dropped:
     cut: int
 
 
-def _dropped_lines(opened: Open, where: str, header: Header, numeric: Collection[str], *, is_ours: bool) -> _Dropped:
+def _dropped_lines(
+    opened: Open, where: str, header: TableHeader, numeric: Collection[str], *, is_ours: bool
+) -> _Dropped:
     """Find the lines that can be left out; raises FileRefusedError for the first that cannot be read."""
     dropped: set[int] = set()
     cut, end = set[int](), CutEnd()
@@ -314,7 +322,7 @@ def _dropped_lines(opened: Open, where: str, header: Header, numeric: Collection
     return _Dropped(frozenset(dropped | cut), end.count(ends_whole=is_whole, most=0 if is_ours else MOST_CUT))
 
 
-def _refuse_cells(cells: list[str], here: str, header: Header, numeric: Collection[str]) -> None:
+def _refuse_cells(cells: list[str], here: str, header: TableHeader, numeric: Collection[str]) -> None:
     if len(cells) > len(header.names):
         raise FileRefusedError(
             here,

@@ -99,11 +99,12 @@ class ImportedTrial:
 
 @dataclass(frozen=True, slots=True)
 class FilesOfTrial:
-    """`name`: what the files have in common, to call the trial by."""
+    """`name`: what the files have in common, to call the trial by. `is_one_sensor`: each file holds one."""
 
     format: str
     name: str
     files: tuple[str, ...]
+    is_one_sensor: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from tests.devices.files.test_public_layouts import (
     RIGHT,
     ROWS,
     G,
-    Motion,
+    MovedSensor,
     a_letter,
     a_picture,
     commas_in_commas,
@@ -34,7 +34,7 @@ NAMES = ("t", "p", "q", "r", "u", "v", "w")  # of which none states anything
 STATED = TableChoices(acc=("p", "q", "r"), gyr=("u", "v", "w"), time="t")
 
 
-def table(path: Path, *, names: tuple[str, ...] = NAMES, motion: Motion = LEFT, by: str = ",") -> Path:
+def table(path: Path, *, names: tuple[str, ...] = NAMES, motion: MovedSensor = LEFT, by: str = ",") -> Path:
     body = rows_of(motion.time_s, motion.acc, motion.gyr, by=by)
     return write(path, [by.join(names), *body])
 
@@ -130,7 +130,7 @@ def test_each_choice_can_be_stated(name: str, tmp_path: Path) -> None:
 
 def test_a_wrong_choice_shows_why_it_cannot_be(tmp_path: Path) -> None:
     def refusal(**stated: object) -> str:
-        found = preview_of(table(tmp_path / "a.csv"), replace(STATED, **stated)).refusal  # type: ignore[arg-type]
+        found = preview_of(table(tmp_path / "a.csv"), replace(STATED, **stated)).refusal  # type: ignore[arg-type]  # of several types
         assert found is not None
         return str(found)
 

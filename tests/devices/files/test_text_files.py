@@ -72,7 +72,7 @@ def test_a_header_that_is_written_again_and_empty_rows_at_the_end_are_no_rows(tm
 
 
 @pytest.mark.parametrize("cell", ["NA", "n/a", "NULL", "null", "nan", "NaN", "None", "-", "--", " NA", ""])
-def test_what_stands_for_nothing_is_a_missing_value(tmp_path: Path, cell: str) -> None:
+def test_words_for_nothing_are_missing_values(tmp_path: Path, cell: str) -> None:
     (tmp_path / "a.csv").write_text(f"t,a\n0,{cell}\n1,2\n")
     assert np.isnan(read_csv(tmp_path / "a.csv", "a.csv", {"t", "a"}).numbers["a"][0])
     assert np.isnan(number_in(cell))
