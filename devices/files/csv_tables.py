@@ -98,7 +98,7 @@ def csv_trial(
 ) -> ImportedTrial:
     """Read one trial's sensors; raises FileRefusedError if none can be read.
 
-    `choices`: what is stated of tables by their fingerprints, or of all by "".
+    `choices`: what is stated of tables by their paths or fingerprints, or of all by "".
     """
 
     def read(path: Path) -> list[NamedTable]:
@@ -111,7 +111,7 @@ def choices_for(path: Path, choices: StatedChoices) -> TableChoices | None:
     """What is stated of a file; None where nothing is; raises OSError where it cannot be opened."""
     if not choices or not path.is_file():
         return None
-    return choices.get(fingerprint_of(path)) or choices.get(ALL_TABLES)
+    return choices.get(str(path)) or choices.get(fingerprint_of(path)) or choices.get(ALL_TABLES)
 
 
 def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 0) -> list[NamedTable]:
@@ -127,6 +127,8 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
     time = time_column(layout, choices, found)
     is_text = bool(time) and is_text_time(layout, time, choices)
     sensor = sensor_column(layout, choices)
+    if choices.are_any:
+        _refuse_shared(found, time, sensor, where)
     if choices.time:
         found = tuple(replace(one, time=time, counter="") for one in found)
     numeric = {name for one in found for name in one.names()}
@@ -148,7 +150,7 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
         findings=table.findings,
         stated=found,
     )
-    return _by_sensor(named, table, sensor) if sensor else [named]
+    return _by_sensor(named, table, sensor, is_stated=bool(choices.sensor)) if sensor else [named]
 
 
 def _sensors_in(layout: TableLayout, path: Path) -> tuple[SensorColumns, ...]:
@@ -211,6 +213,19 @@ def time_column(layout: TableLayout, choices: TableChoices, found: Sequence[Sens
     return times.pop() if len(times) == 1 else ""
 
 
+def _refuse_shared(found: Sequence[SensorColumns], time: str, sensor: str, where: str) -> None:
+    """Refuse a column that is stated to be two things; raises FileRefusedError."""
+    used = [name for one in found for name in (*one.acc, *one.gyr)] + [name for name in (time, sensor) if name]
+    twice = next((name for name in used if used.count(name) > 1), None)
+    if twice is not None:
+        raise FileRefusedError(
+            where,
+            "the column {name} is chosen for two quantities",
+            "Choose another column for one of them",
+            name=quoted(twice),
+        )
+
+
 def is_text_time(layout: TableLayout, time: str, choices: TableChoices) -> bool:
     """Whether a column of times holds texts such as 23:59:59.990."""
     if choices.time_unit:
@@ -235,11 +250,19 @@ def _stated_units(found: Sequence[SensorColumns], time: str, choices: TableChoic
     return units
 
 
-def _by_sensor(table: NamedTable, read: Table, column: str) -> list[NamedTable]:
-    """The rows of each sensor as a table of its own, where the column names a few."""
+def _by_sensor(table: NamedTable, read: Table, column: str, *, is_stated: bool) -> list[NamedTable]:
+    """The rows of each sensor as a table of its own, where the column names a few; raises FileRefusedError."""
     names = np.array([str(text).strip() for text in read.texts[column]])
     known = [str(name) for name in dict.fromkeys(names.tolist()) if name and name.lower() not in NO_VALUE]
     if not 0 < len(known) <= MOST_SENSORS:
+        if is_stated:
+            raise FileRefusedError(
+                table.where,
+                "the column {name} holds {count} different names of sensors",
+                "Choose the column that names a few sensors, or none",
+                name=quoted(column),
+                count=len(known),
+            )
         return [table]
     return [_rows_of(table, np.flatnonzero(names == name), name) for name in known]
 

@@ -43,9 +43,8 @@ def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, ar
             refused.append(why_not_recognised(path))
             tables += [str(path)] if path.is_file() and fingerprint_of(path) else []
             continue
-        common = (
-            path.parent.name if are_one and name != SESSION and FORMATS[name].is_one_sensor else _common(name, path)
-        )
+        is_merged = are_one and name != SESSION and FORMATS[name].is_one_sensor
+        common = path.parent.name if is_merged else _common(name, path)
         found.setdefault((name, path.parent, common), []).append(str(path))
     if not found and mappings and not refused:
         raise FileRefusedError(
@@ -64,6 +63,7 @@ def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, ar
             name,
             (common if len(files) > 1 else Path(files[0]).stem) or folder.name,
             (*files, *(str(path) for path in mappings if path.parent == folder and _is_named_by(path, name, files))),
+            name != SESSION and FORMATS[name].is_one_sensor,
         )
         for (name, folder, common), files in found.items()
     )

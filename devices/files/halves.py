@@ -21,7 +21,10 @@ from devices.files.trial import ImportedSensor, UnreadFile
 OPEN = "rad/s"  # in which rates are kept as long as their unit is open
 LONGEST_STEP = 2.5  # usual steps of the acceleration; beyond, it has a gap
 LEAST_COMMON = 0.5  # of the shorter file: those of one recording lie on each other
-IMPORT_BOTH = "Choose the files of accelerometer and gyroscope together"
+IMPORT_BOTH = (
+    "Choose the files of accelerometer and gyroscope together; their names differ in the quantity alone, such as "
+    "left_thigh_acc and left_thigh_gyro"
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,7 +114,7 @@ def _required(table: NamedTable, rate_hz: float | None) -> float:
         raise FileRefusedError(
             table.where,
             "the samples in the file have no times",
-            "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
+            "Add a column time_s, time_ms or time_us, or give the sampling rate (--rate)",
         )
     return rate_hz
 
@@ -127,7 +127,7 @@ def _refuse_other_packets(table: NamedTable, counts: FloatArray, name: str) -> N
         raise FileRefusedError(
             table.where,
             "{name} rises by {rises} for each sample: it counts other packets too, or samples are lost",
-            "Export the times of the samples; only if no sample was lost, give --time none with --rate",
+            "Export the times of the samples; if no sample was lost, use no times (--time none) and a rate (--rate)",
             name=quoted(name),
             rises=f"{rises:.2f}",
         )
@@ -207,8 +207,7 @@ def _time_unit(
         raise FileRefusedError(
             table.where,
             "the unit of {name} is unclear; its step between samples is {step}",
-            "Name the column with its unit, such as time_s, time_ms or time_us, or give the samples per "
-            "second with --rate",
+            "Name the column with its unit, such as time_s, time_ms or time_us, or give the sampling rate (--rate)",
             name=quoted(name),
             step=f"{usual:.6g}",
         )

@@ -4,7 +4,7 @@ What is not stated is found.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
 from core.findings import Finding
@@ -43,7 +43,7 @@ class TableChoices:
 NO_CHOICES = TableChoices()
 ALL_TABLES = ""  # in place of a fingerprint
 StatedChoices = Mapping[str, TableChoices]
-"""What is stated of tables, by their fingerprints or of `ALL_TABLES`."""
+"""What is stated of tables, by their paths, by their fingerprints, or of `ALL_TABLES`."""
 NOTHING_STATED: StatedChoices = MappingProxyType({})
 
 
@@ -78,6 +78,22 @@ class TablePreview:
     is_by_values: bool
     is_cut: bool
     refusal: FileRefusedError | None
+
+
+def by_place(choices: TableChoices, names: Sequence[str]) -> TableChoices:
+    """The same choices with columns by their places from 1; raises ValueError where a place would name another one."""
+
+    def place(column: str) -> str:
+        if column in ("", NONE):
+            return column
+        name = column_named(column, names)
+        found = str(names.index(name) + 1) if name is not None else ""
+        if not found or column_named(found, names) != name:
+            raise ValueError("the column has no place that names it")
+        return found
+
+    acc, gyr = (tuple(map(place, columns)) for columns in (choices.acc, choices.gyr))
+    return replace(choices, acc=acc, gyr=gyr, time=place(choices.time), sensor=place(choices.sensor))
 
 
 def column_named(stated: str, names: Sequence[str]) -> str | None:

@@ -27,6 +27,7 @@ MOST_LINES = 400  # by which a layout is found
 LEAST_NUMBERS = 3  # of a row: three axes
 FIRST_ROWS = 20
 COMMENT = "#"
+NAMELESS = "nameless "  # begins the fingerprint of what has no header
 BLANKS = re.compile(rb"[ \t]+")
 RATE = re.compile(
     r"(?:sampl\w*[ _-]*(?:rate|freq\w*)|(?:data|update|output)[ _-]*rate|\bfs\b|abtastrate)"
@@ -56,9 +57,13 @@ class TableLayout:
 
     @property
     def fingerprint(self) -> str:
-        """What tables of one program have in common: their names and what divides them, without any of the words."""
+        """What tables of one program have in common: their names and what divides them, without any of the words.
+
+        Without names, tables of many programs have it in common.
+        """
         names = [*self.names] if self.header_line else [str(len(self.names))]
-        return sha256("\x1f".join([self.header.delimiter, *names]).encode()).hexdigest()[:16]
+        hashed = sha256("\x1f".join([self.header.delimiter, *names]).encode()).hexdigest()[:16]
+        return hashed if self.header_line else f"{NAMELESS}{hashed}"
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -76,7 +81,7 @@ class TableLayout:
 
 
 @dataclass(frozen=True, slots=True)
-class _TableLine:
+class _HeadLine:
     """A line of the head: its number from 1, where the next begins, and its text."""
 
     number: int
@@ -166,7 +171,7 @@ def fingerprint_of(path: Path) -> str:
         return ""
 
 
-def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_TableLine]:
+def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_HeadLine]:
     """The first lines that are whole; raises FileRefusedError for what is no text."""
     with _opened(path, encoding, is_squeezed) as file:
         head = file.read(HEAD_BYTES)
@@ -177,7 +182,7 @@ def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_Ta
             "the file format is not recognised; the file is not text but binary data",
             "Leave this file out, or export the recording as text (CSV)",
         )
-    found: list[_TableLine] = []
+    found: list[_HeadLine] = []
     end = 0
     pieces = head.split(b"\n")
     for number, raw in enumerate(pieces[:MOST_LINES], 1):
@@ -188,13 +193,13 @@ def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_Ta
             text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip("\r")
         except UnicodeDecodeError as error:
             raise FileRefusedError(f"{where}, line {number}", "the file is not UTF-8 text", CORRECT_IT) from error
-        found.append(_TableLine(number, min(end, len(head)), text))
+        found.append(_HeadLine(number, min(end, len(head)), text))
     if any("\r" in line.text for line in found):
         raise FileRefusedError(where, "the line contains a line break (carriage return)", CORRECT_IT)
     return found
 
 
-def _is_content(line: _TableLine) -> bool:
+def _is_content(line: _HeadLine) -> bool:
     return bool(line.text.strip()) and not line.text.startswith(COMMENT)
 
 
@@ -207,17 +212,17 @@ def _cells(text: str, delimiter: str) -> list[str]:
 
 
 def _is_number(cell: str) -> bool:
-    """Whether a cell is a number, or means a missing one."""
+    """Whether a cell is a number, or a word for a missing one."""
     return is_value(cell) or cell.lower() in NO_VALUE
 
 
-def _numbers(lines: Sequence[_TableLine], delimiter: str) -> int:
+def _numbers(lines: Sequence[_HeadLine], delimiter: str) -> int:
     """How many numbers stand in rows, if this separator divides them."""
     found = (sum(map(_is_number, _cells(line.text, delimiter))) for line in lines if _is_content(line))
     return sum(count for count in found if count >= LEAST_NUMBERS)
 
 
-def _first_row(lines: Sequence[_TableLine], cells: Sequence[Sequence[str]], stated_line: int | None) -> int | None:
+def _first_row(lines: Sequence[_HeadLine], cells: Sequence[Sequence[str]], stated_line: int | None) -> int | None:
     """Index of the first row of numbers below the stated header; None where no line is one."""
     known = [
         at
@@ -232,7 +237,7 @@ def _first_row(lines: Sequence[_TableLine], cells: Sequence[Sequence[str]], stat
 
 
 def _header_place(
-    lines: Sequence[_TableLine], cells: Sequence[Sequence[str]], first: int, width: int, stated_line: int | None
+    lines: Sequence[_HeadLine], cells: Sequence[Sequence[str]], first: int, width: int, stated_line: int | None
 ) -> tuple[int | None, int | None]:
     """Indices of the lines of names and of units, None where there is none."""
     above = [at for at in range(first) if any(cells[at])]

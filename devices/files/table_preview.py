@@ -19,7 +19,7 @@ from devices.files.magnitudes import middle_size
 from devices.files.named_columns import GRAVITY_M_S2, LEAST_DOWN, halves_of_table, sensors_of_table
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import CLOCK, COUNT, NONE, PreviewedSensor, TableChoices, TablePreview
-from devices.files.table_layout import TableLayout, layout_of, lines_of_head
+from devices.files.table_layout import TableLayout, fingerprint_of, layout_of, lines_of_head
 from devices.files.tables import number_in
 from devices.files.text_times import is_time
 
@@ -28,16 +28,20 @@ SHOWN_S, SHOWN_SAMPLES = 10.0, 2000  # of each sensor
 SHOWN_ROWS, SHOWN_LINES, LONGEST_LINE = 6, 40, 80
 MOSTLY = 0.9  # of the rows of a column
 MOST_SENSORS = 20
+AXES = "xyz"
 
 
 def preview_of(path: Path, stated: TableChoices) -> TablePreview:
     """Read the beginning of a table as somebody states; raises OSError where it cannot be opened."""
     where = path.name
     lines = tuple(line[:LONGEST_LINE] for line in lines_of_head(path, stated.encoding)[:SHOWN_LINES])
+    fingerprint = fingerprint_of(path)  # as it is without being stated: what others of its program have in common
     try:
         layout = layout_of(path, where, stated, PREVIEW_BYTES)
     except FileRefusedError as refusal:
-        return TablePreview("", lines, (), (), stated, stated, (), is_by_values=False, is_cut=False, refusal=refusal)
+        return TablePreview(
+            fingerprint, lines, (), (), stated, stated, (), is_by_values=False, is_cut=False, refusal=refusal
+        )
     choices = _with_guesses(layout, stated)
     sensors: list[PreviewedSensor] = []
     why: FileRefusedError | None = None
@@ -50,7 +54,7 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         why, sensors = refusal, []
     shown = tuple(tuple(row) for row in layout.rows[:SHOWN_ROWS])
     return TablePreview(
-        fingerprint=layout.fingerprint,
+        fingerprint=fingerprint,
         lines=lines,
         columns=layout.names,
         rows=shown,
@@ -121,11 +125,13 @@ def _with_guesses(layout: TableLayout, stated: TableChoices) -> TableChoices:
     if not time:
         rising = [k for k in np.flatnonzero(is_number) if _rises(values[:, k])]
         time = layout.names[rising[0]] if rising else ""
-    free = [
-        k for k in range(len(layout.names)) if is_number[k] and layout.names[k] != time and not _rises(values[:, k])
-    ]
+    taken = {time, sensor_column(layout, stated)}
+    free = [k for k, name in enumerate(layout.names) if is_number[k] and name not in taken and not _rises(values[:, k])]
     triples = [(k, k + 1, k + 2) for k in free if {k + 1, k + 2} <= set(free)]
     acc = next((places for places in triples if _is_force(values[:, places])), None)
+    if acc is None and len(free) == len(AXES) and triples:  # a gyroscope in a file of its own
+        rates = tuple(layout.names[k] for k in free)
+        return replace(stated, time=stated.time or time, acc=(NONE,), gyr=rates)
     if acc is None:
         return replace(stated, time=stated.time or time)
     apart = [places for places in triples if not set(places) & set(acc)]

@@ -42,7 +42,11 @@ def as_utf8(head: bytes) -> bytes:
 def open_text(path: Path, encoding: str = "") -> BinaryIO:
     """Open a text as UTF-8; `encoding` empty: as its first bytes show. What it cannot decode becomes a mark."""
     with path.open("rb") as file:
-        known = encoding or encoding_of(file.read(HEAD_BYTES))
+        head = file.read(HEAD_BYTES)
+    found = encoding_of(head)
+    known = encoding or found
+    if known == UTF_16 and not head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        known = found if found.startswith(UTF_16) else f"{UTF_16}-le"  # as Windows writes it
     if known == UTF_8:
         return path.open("rb")
     with path.open(encoding=known, errors="replace", newline="") as text:

@@ -44,7 +44,7 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "synchronised one to 0.02 ms. No synchronised recording with motion was at hand.",
     "mvnx": "The MVN manual. No real file was at hand.",
     "apdm": "Real CSV exports of both dialects; for HDF5 the published layout. No real HDF5 file was at hand.",
-    "opensim": "Tables that OpenSim wrote and read, and our own exports. No recording of another program was at hand.",
+    "opensim": "OpenSim's documentation. No real file was at hand.",
     "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds "
     "no error. No samples of another program's set were at hand.",
     "xdf": "Files laid out by the format's description, also of the simulated walker. No recording of LabRecorder was "
@@ -99,11 +99,12 @@ class ImportedTrial:
 
 @dataclass(frozen=True, slots=True)
 class FilesOfTrial:
-    """`name`: what the files have in common, to call the trial by."""
+    """`name`: what the files have in common, to call the trial by. `is_one_sensor`: each file holds one."""
 
     format: str
     name: str
     files: tuple[str, ...]
+    is_one_sensor: bool = False
 
 
 @dataclass(frozen=True, slots=True)

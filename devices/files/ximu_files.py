@@ -78,7 +78,7 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
         raise FileRefusedError(
             where,
             "the file has packet numbers but no times, and no registers beside it give its rate",
-            "Put the file {registers} beside it, or give the samples per second with --rate",
+            "Put the file {registers} beside it, or give the sampling rate (--rate)",
             registers=(registers_beside(path) or [Path(REGISTERS)])[0].name,
         )
     counts = table.numbers.get(number, table.numbers.get(number.title(), np.empty(0)))

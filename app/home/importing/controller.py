@@ -2,17 +2,19 @@
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
+from app.home.importing.explaining import Explaining, OpenTable
+from app.home.importing.found import FilesRead, Found, HowRead, read_files
 from app.home.importing.import_page import ImportPage
 from app.home.importing.import_words import program_name
-from app.importing.import_drafts import SessionDraft, chains_of_motion, drafts_of, session_of
-from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
+from app.home.importing.table_words import refused_line
+from app.importing.import_drafts import SessionDraft, chains_of_motion, session_of
 from app.storage.exchange import import_session
 from app.system.progress import Report
 from app.theme.icons import Icon
@@ -22,34 +24,14 @@ from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
 from app.workers.long_work import LongWork
 from devices.files.refusal import FileRefusedError
-from devices.files.trial import PROGRAMS, SESSION
+from devices.files.trial import PROGRAMS
 
 if TYPE_CHECKING:
     from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
     from core.placement.chains import Chains
-    from core.session import Session
-    from devices.files.trial import ImportedTrial
 
 MOST_SENTENCES = 8
-
-
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """One session that was read, and where: that of a session folder, or a draft of one."""
-
-    where: str
-    session: "Session | None"
-    draft: SessionDraft | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class _Read:
-    """What came of reading: `again`: the files of known programs that could not be read."""
-
-    found: tuple[_Found, ...]
-    refused: tuple[FileRefusedError, ...]
-    again: tuple[Path, ...]
 
 
 class Importing(LongWork):
@@ -67,23 +49,35 @@ class Importing(LongWork):
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)
         self._dialog: QFileDialog | None = None
-        self._waiting: deque[_Found] = deque()
-        self._shown: _Found | None = None
+        self._waiting: deque[Found] = deque()
+        self.shown: Found | None = None
+        """What is on the page, to be confirmed."""
         self._number = self._count = 0
-        self._again: tuple[Path, ...] = ()
+        self._paths: tuple[Path, ...] = ()  # that were asked for
+        self._how = HowRead()
+        self._read = FilesRead((), (), (), ())
         self._placing: SessionDraft | None = None
         self._is_importing = False
         self.page = ImportPage()
+        self._explaining = Explaining(controller, self.page.table, self)
+        self._explaining.asked.connect(self._on_table_asked)
+        self._explaining.ended.connect(self._on_explained)
+        self._explaining.reported.connect(self.reported)
         self.page.code.line_edit.returnPressed.connect(self.take_in)
         self.page.choose_files.clicked.connect(self._choose_files)
         self.page.choose_folder.clicked.connect(self._choose_folder)
         self.page.reading_requested.connect(self._on_reading_requested)
+        self.page.explaining_requested.connect(self._on_explaining_requested)
         self.page.draft.placing_requested.connect(self._on_placing_requested)
+        self.page.draft.columns_requested.connect(self._on_columns_requested)
+        self.page.draft.combining_requested.connect(self._on_combining_requested)
 
     @property
     def bar(self) -> BarState:
         """What can be done with what is shown."""
-        if self._shown is None:
+        if self._explaining.is_on:
+            return self._explaining.bar
+        if self.shown is None:
             return BarState()
         code = self.page.code.text.strip()
         words = tr("Import for {code}").format(code=code) if code else tr("Import")
@@ -100,18 +94,21 @@ class Importing(LongWork):
 
     def read(self, paths: Sequence[Path], rate_hz: float | None = None) -> None:
         """Read files and folders, to be imported once it is stated whose they are."""
+        self._read_as(paths, HowRead(rate_hz))
 
-        def work(_opened: "OpenedLibrary", report: Report) -> _Read:
-            return _read(paths, rate_hz, report)
+    def _read_as(self, paths: Sequence[Path], how: HowRead) -> None:
+        def work(_opened: "OpenedLibrary", report: Report) -> FilesRead:
+            return read_files(paths, how, report)
 
         self.forget()
+        self._paths, self._how = tuple(paths), how
         name = paths[0].name if len(paths) == 1 else tr_n("{count} file", "{count} files", len(paths))
         self.working.emit(tr("Reading {folder}").format(folder=name.format(count=len(paths))))
         self._controller.run_long(work, self._on_read, self._on_read_refused, self._on_progressed, self)
 
     def take_in(self) -> None:
         """Put what is shown into the library, as a session of the patient with the code that is on the page."""
-        code, shown = self.page.code.text.strip(), self._shown
+        code, shown = self.page.code.text.strip(), self.shown
         if shown is None or not code or (self._is_draft and not self._is_draft_ready):
             return
         kinds, sites, day = self.page.draft.kinds, self.page.draft.sites, self.page.day or ""
@@ -146,11 +143,12 @@ class Importing(LongWork):
     def forget(self) -> None:
         """Import nothing of what was read."""
         self._waiting.clear()
-        self._shown, self._is_importing = None, False
+        self._explaining.forget()
+        self.shown, self._is_importing = None, False
 
     @property
     def _is_draft(self) -> bool:
-        return self._shown is not None and self._shown.draft is not None
+        return self.shown is not None and self.shown.draft is not None
 
     @property
     def _is_draft_ready(self) -> bool:
@@ -169,24 +167,62 @@ class Importing(LongWork):
         self.read([Path(folder)])
 
     def _on_reading_requested(self, rate_hz: float) -> None:
-        self.read(self._again, rate_hz)
+        self._read_as(self._read.again, replace(self._how, rate_hz=rate_hz))
 
-    def _on_read(self, read: _Read) -> None:
-        self._again = read.again
+    def _on_explaining_requested(self) -> None:
+        self._explain(self._read.tables)
+
+    def _on_columns_requested(self) -> None:
+        if self.shown is not None:
+            self._explain([Path(file) for file in self.shown.files])
+
+    def _on_combining_requested(self) -> None:
+        self._read_as(self._paths, replace(self._how, are_one=True))
+
+    def _explain(self, tables: Sequence[Path]) -> None:
+        """Ask what the columns of these tables mean, one after the other."""
+        whys = {path: _why(path, self._read.refused) for path in tables}
+        self._explaining.begin([OpenTable(path, why) for path, why in whys.items()])
+
+    def _on_table_asked(self) -> None:
+        self.page.show_table(self._explaining.where)
+        self.asked.emit()
+
+    def _on_explained(self) -> None:
+        """Read again with what is known now; where nothing is, go back to what was shown."""
+        choices = dict(self._explaining.choices)
+        self._explaining.forget()
+        if choices:
+            self._read_as(self._paths, replace(self._how, choices={**self._how.choices, **choices}))
+            return
+        self._show_unread()
+        if self.shown is not None:
+            self._show(self.shown)
+        else:
+            self.page.show_nothing([program_name(key) for key in PROGRAMS])
+            self.asked.emit()
+
+    def _on_read(self, read: FilesRead) -> None:
+        self._read = read
         if not read.found:
             self.page.show_nothing([program_name(key) for key in PROGRAMS])
-        sentences = [str(refusal) for refusal in read.refused]
-        more = len(sentences) - MOST_SENTENCES
-        if more > 0:
-            stated = tr_n("And {count} more file.", "And {count} more files.", more)
-            sentences = [*sentences[:MOST_SENTENCES], stated.format(count=more)]
-        self.page.show_unread(sentences, can_try_again=bool(read.again))
+        self._show_unread()
         self._waiting.extend(read.found)
         self._number, self._count = 0, len(read.found)
         if read.found:
             self._show_next()
+        elif read.tables and not self._how.choices:
+            self._explain(read.tables)
         else:
             self.asked.emit()
+
+    def _show_unread(self) -> None:
+        sentences = [refused_line(refusal) for refusal in self._read.refused]
+        more = len(sentences) - MOST_SENTENCES
+        if more > 0:
+            stated = tr_n("And {count} more file.", "And {count} more files.", more)
+            sentences = [*sentences[:MOST_SENTENCES], stated.format(count=more)]
+        self.page.show_unread(sentences, can_try_again=bool(self._read.again), can_explain=bool(self._read.tables))
 
     def _show_next(self) -> None:
         """Show the next session, or leave where there is none."""
@@ -194,8 +230,13 @@ class Importing(LongWork):
             self.forget()
             self.left.emit()
             return
-        shown = self._shown = self._waiting.popleft()
+        if self.shown is not None:
+            self._how = replace(self._how, done=self._how.done | set(self.shown.files))
+        self.shown = self._waiting.popleft()
         self._number += 1
+        self._show(self.shown)
+
+    def _show(self, shown: Found) -> None:
         which = tr("Session {number} of {count}: ").format(number=self._number, count=self._count)
         where = f"{which if self._count > 1 else ''}{shown.where}"
         if (session := shown.session) is not None:
@@ -204,7 +245,11 @@ class Importing(LongWork):
             self.page.show_session(where, names, code, session.findings, is_simulated=session.is_simulated)
         elif shown.draft is not None:
             program = program_name(shown.draft.recordings[0].trial.format)
-            self.page.show_draft(where, program, shown.draft)
+            parts = [one for one in (shown, *self._waiting) if one.is_part and shown.is_part]
+            can_be_combined = len({Path(file).parent for one in parts for file in one.files}) < len(parts)
+            self.page.show_draft(
+                where, program, shown.draft, has_columns=shown.are_tables, can_be_combined=can_be_combined
+            )
             if self.page.draft.can_be_placed:
                 self._place(self._on_proposed, self._on_not_proposed)
         self.asked.emit()
@@ -214,7 +259,7 @@ class Importing(LongWork):
 
     def _place(self, on_placed: "Callable[[Chains | None], None]", on_refused: Callable[[str, str], None]) -> None:
         """Look in the motion for where the sensors of the draft that is shown were worn."""
-        draft, worn = self._shown.draft if self._shown is not None else None, self.page.draft.worn
+        draft, worn = self.shown.draft if self.shown is not None else None, self.page.draft.worn
 
         def work(_opened: "OpenedLibrary") -> "Chains | None":
             return chains_of_motion(draft, worn) if draft is not None else None
@@ -224,7 +269,7 @@ class Importing(LongWork):
 
     def _on_proposed(self, chains: "Chains | None") -> None:
         """Propose positions that nobody asked for: only certain ones, of the draft that is still shown."""
-        is_shown = self._shown is not None and self._shown.draft is self._placing
+        is_shown = self.shown is not None and self.shown.draft is self._placing
         if chains is not None and chains.is_certain and is_shown and self.page.draft.can_be_placed:
             self.page.draft.show_chains(chains, takes_focus=False)
 
@@ -279,35 +324,9 @@ class Importing(LongWork):
         self.imported.emit(None)
 
 
-def _read(paths: Sequence[Path], rate_hz: float | None, report: Report) -> _Read:
-    """All that can be read of these files and folders, put together to sessions."""
-    report(0.0, paths[0].name)
-    gathered = gather_foreign(paths, lambda: report(0.0, paths[0].name))
-    refused, again = list(gathered.refused), []
-    folders: list[_Found] = []
-    trials: list[tuple[str, ImportedTrial]] = []
-    places: dict[int, str] = {}  # by the trial's identity: where its files are
-    for number, one in enumerate(gathered.trials):
-        share, files = number / len(gathered.trials), [Path(file) for file in one.files]
-
-        def waiting(share: float = share, name: str = one.name) -> None:
-            report(share, name)
-
-        waiting()
-        try:
-            if one.format == SESSION:
-                folders.append(_Found(str(files[0]), read_foreign_session(files[0], waiting)))
-            else:
-                trial = read_foreign_trial(one.format, files, rate_hz, waiting)
-                trials.append((one.name, trial))
-                places[id(trial)] = str(files[0].parent if len(files) > 1 else files[0])
-        except FileRefusedError as refusal:
-            refused.append(refusal)
-            again += files if one.format != SESSION else []
-    drafts = [_Found(places[id(draft.recordings[0].trial)], None, draft) for draft in drafts_of(trials)]
-    if len(paths) == 1 and len(refused) == 1 and not folders and not drafts and not again:
-        raise refused[0]
-    return _Read((*folders, *drafts), tuple(refused), tuple(again))
+def _why(path: Path, refused: Sequence[FileRefusedError]) -> str:
+    """Why a file was not read; empty where that is not what was refused."""
+    return next((refused_line(one) for one in refused if path.name in one.where), "")
 
 
 def _named(name: str) -> str:

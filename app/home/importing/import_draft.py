@@ -15,6 +15,7 @@ from app.home.importing.import_words import (
     origin_words,
     sensor_name,
 )
+from app.home.importing.table_words import refused_line
 from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft, key_of
 from app.theme.current import scaled
 from app.theme.icons import Icon
@@ -42,6 +43,8 @@ class DraftCards(QWidget):
 
     changed = Signal()  # a choice was made
     placing_requested = Signal()  # the motion shall say where the sensors were
+    columns_requested = Signal()  # what the columns mean shall be shown, and may be changed
+    combining_requested = Signal()  # the files shall be one recording
 
     def __init__(self, of_code: QWidget) -> None:
         super().__init__()
@@ -51,6 +54,8 @@ class DraftCards(QWidget):
         self._of_recordings, self._of_sensors = Card(padding=20, spacing=12), Card(padding=20, spacing=8)
         self._recordings_title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self._recording_rows = QVBoxLayout()
+        self.columns = Button(tr("Check the columns"), ButtonKind.SECONDARY, Icon.EDIT, height=40)
+        self.combine = Button(tr("Combine into one recording"), ButtonKind.SECONDARY, Icon.GROUPS, height=40)
         self._sensors_title = Text(tr("Sensor positions"), size=16, weight=SEMIBOLD, wraps=True)
         self._sensor_rows = QGridLayout()
         self.place = Button(tr("Detect from movement"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
@@ -106,15 +111,20 @@ class DraftCards(QWidget):
     def tab_order(self) -> list[QWidget]:
         kinds: list[QWidget] = [row.kind for row in self._recordings]
         sites = [row.site for row in self._sensors]
-        return [*kinds, *sites, self.place, self.is_left, self.is_right, self.one_receiver]
+        return [*kinds, self.columns, self.combine, *sites, self.place, self.is_left, self.is_right, self.one_receiver]
 
     def show_folder(self) -> None:
         """Show nothing but the code: what a session folder states of its recordings and sensors holds."""
         self._of_recordings.hide()
         self._of_sensors.hide()
 
-    def show_draft(self, program: str, draft: SessionDraft) -> None:
-        """Show what was read, with what is proposed."""
+    def show_draft(
+        self, program: str, draft: SessionDraft, *, has_columns: bool = False, can_be_combined: bool = False
+    ) -> None:
+        """Show what was read, with what is proposed. `has_columns`: what they mean can be stated.
+
+        `can_be_combined`: it may be one sensor of several, whose files are not called alike.
+        """
         self._chains = None
         self._of_recordings.show()
         self._of_sensors.show()
@@ -132,6 +142,8 @@ class DraftCards(QWidget):
             row.kind.currentIndexChanged.connect(self._on_changed)
         for sensor in self._sensors:
             sensor.site.currentIndexChanged.connect(self._on_changed)
+        self.columns.setVisible(has_columns)
+        self.combine.setVisible(can_be_combined)
         self.one_receiver.show_on(False)
         self.one_receiver.setVisible(draft.is_clock_open)
         for card in (self._of_recordings, self._of_sensors):
@@ -154,7 +166,8 @@ class DraftCards(QWidget):
         return True
 
     def _build(self, of_code: QWidget) -> None:
-        lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, 1)
+        verbs = lay_out(QHBoxLayout(), self.columns, self.combine, 1)
+        lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, verbs, 1)
         self._sensor_rows.setColumnStretch(0, 1)
         buttons = lay_out(QHBoxLayout(), self.place, self.is_left, self.is_right, 1)
         receiver = lay_out(QHBoxLayout(), self.one_receiver, 1)
@@ -164,6 +177,8 @@ class DraftCards(QWidget):
         self._row = lay_out(
             QBoxLayout(QBoxLayout.Direction.LeftToRight, self), (self._left, 1), (self._of_sensors, 1), margins=0
         )
+        self.columns.clicked.connect(self.columns_requested)
+        self.combine.clicked.connect(self.combining_requested)
         self.place.clicked.connect(self._on_place)
         self.is_left.clicked.connect(lambda: self._on_side(Side.LEFT))
         self.is_right.clicked.connect(lambda: self._on_side(Side.RIGHT))
@@ -232,7 +247,9 @@ class _RecordingRow:
         stated = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
         grid.addWidget(Text(stated, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
         for unread in recording.trial.unread:
-            grid.addWidget(Text(str(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3)
+            grid.addWidget(
+                Text(refused_line(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3
+            )
         column.addWidget(self._part)
 
     def remove(self) -> None:

@@ -8,6 +8,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.importing.import_draft import DraftCards
+from app.home.importing.table_form import TableForm
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -30,6 +31,7 @@ class ImportPage(QWidget):
 
     changed = Signal()  # something was typed or chosen
     reading_requested = Signal(float)  # what could not be read is to be tried again at a rate, Hz
+    explaining_requested = Signal()  # the columns of tables that could not be read are to be stated
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,6 +49,7 @@ class ImportPage(QWidget):
         self.findings = FindingsList()
         self._card = Card(padding=20, spacing=12)
         self.draft = DraftCards(self._card)
+        self.table = TableForm()
         self._unread = Card(padding=20, spacing=8)
         self._unread_words = Text(tone="ink2", wraps=True)
         self.rate = NumberField(
@@ -58,13 +61,15 @@ class ImportPage(QWidget):
             is_optional=True,
         )
         self.read_again = Button(tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
+        self.explain = Button(tr("Describe the table"), ButtonKind.SECONDARY, Icon.EDIT, height=48)
         self._build()
 
     @property
     def tab_order(self) -> list[QWidget]:
         codes = [self.code.line_edit, self.day_field.line_edit]
-        chosen = [*self.draft.tab_order, *codes, self.findings, self.rate.line_edit, self.read_again]
-        return [self.choose_files, self.choose_folder, *chosen]
+        again = [self.rate.line_edit, self.read_again, self.explain]
+        chosen = [*self.draft.tab_order, *codes, self.findings, *again]
+        return [self.choose_files, self.choose_folder, *self.table.tab_order, *chosen]
 
     @property
     def day(self) -> str | None:
@@ -75,11 +80,15 @@ class ImportPage(QWidget):
             return None
 
     def focus(self) -> None:
-        (self.choose_files if self.draft.isHidden() else self.code).setFocus()
+        if not self.table.isHidden():
+            self.table.focus()
+        else:
+            (self.choose_files if self.draft.isHidden() else self.code).setFocus()
 
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
-        self.draft.set_narrow(width < NARROW_BELOW)
+        for part in (self.draft, self.table):
+            part.set_narrow(width < NARROW_BELOW)
 
     def show_nothing(self, formats: Sequence[str]) -> None:
         """Show how to begin. `formats`: the programs whose files can be read."""
@@ -101,34 +110,57 @@ class ImportPage(QWidget):
         self._show_parts(self.draft, self._recordings_title, self._recordings)
         self.findings.setVisible(bool(findings))
 
-    def show_draft(self, folder: str, program: str, draft: "SessionDraft") -> None:
-        """Show recordings of another program, to be confirmed or changed; their files do not say whose they are."""
+    def show_draft(
+        self,
+        folder: str,
+        program: str,
+        draft: "SessionDraft",
+        *,
+        has_columns: bool = False,
+        can_be_combined: bool = False,
+    ) -> None:
+        """Show recordings of another program, to be confirmed or changed; their files do not say whose they are.
+
+        For the last two see `DraftCards.show_draft`.
+        """
         self._folder.setText(folder)
-        self.draft.show_draft(program, draft)
+        self.draft.show_draft(program, draft, has_columns=has_columns, can_be_combined=can_be_combined)
         self._show_code("", is_simulated=False)
         self.day_field.set_text(draft.started[:10])
         self.day_field.set_wrong("")
         self._show_parts(self.draft, self.day_field)
 
-    def show_unread(self, sentences: Sequence[str], *, can_try_again: bool) -> None:
-        """Say what could not be read, and why; `can_try_again`: a rate may be all that is missing."""
+    def show_table(self, where: str) -> None:
+        """Show the form of a table; what else could not be read is not shown meanwhile."""
+        self._folder.setText(where)
+        self._show_parts(self.table)
+        self._unread.hide()
+
+    def show_unread(self, sentences: Sequence[str], *, can_try_again: bool, can_explain: bool = False) -> None:
+        """Say what could not be read, and why; `can_try_again`: a rate may be all that is missing.
+
+        `can_explain`: there are tables among it.
+        """
         self._unread_words.setText("\n".join(sentences))
-        self._unread.setVisible(bool(sentences))
+        self._unread.setVisible(bool(sentences) or can_explain)
         self.rate.setVisible(can_try_again)
         self.read_again.setVisible(can_try_again)
+        self.explain.setVisible(can_explain)
 
     def _build(self) -> None:
         buttons = lay_out(QHBoxLayout(), self.choose_files, self.choose_folder, 1)
         lay_out(self._begin.column, buttons, self._formats)
         lay_out(self._card.column, self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
         not_read = Text(tr("Not read"), size=16, weight=SEMIBOLD)
-        lay_out(self._unread.column, not_read, self._unread_words, self.rate, self.read_again)
-        cards = (self._begin, self.draft, self._unread, self.findings)
+        again = lay_out(QHBoxLayout(), self.read_again, self.explain, 1)
+        lay_out(self._unread.column, not_read, self._unread_words, self.rate, again)
+        cards = (self._begin, self.table, self.draft, self._unread, self.findings)
         column = lay_out(QVBoxLayout(self), self._title, self._folder, *cards, 1)
         lay_out(column, margins=(24, 16, 24, 20), spacing=16)
         self.day_field.edited.connect(self._on_day_edited)
         self.draft.changed.connect(self.changed)
         self.read_again.clicked.connect(self._on_read_again)
+        self.explain.clicked.connect(self.explaining_requested)
         self._show_parts(self._begin)
         self.show_unread((), can_try_again=False)
 
@@ -142,7 +174,7 @@ class ImportPage(QWidget):
         self.code.set_wrong("")
 
     def _show_parts(self, *shown: QWidget) -> None:
-        for part in (self._begin, self.draft, self._recordings_title, self._recordings, self.day_field):
+        for part in (self._begin, self.table, self.draft, self._recordings_title, self._recordings, self.day_field):
             part.setVisible(part in shown)
         self.findings.hide()
 

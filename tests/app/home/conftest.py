@@ -20,6 +20,14 @@ from core.session import Patient, Session
 from tests.app.home.home_library import PASSPHRASE, open_library
 
 
+@pytest.fixture(autouse=True)
+def tables_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """Where this test keeps what is stated of tables."""
+    place = tmp_path / "config" / "tables.json"
+    monkeypatch.setattr("app.system.known_tables._place", lambda: place)
+    return place
+
+
 @pytest.fixture
 def controller(qtbot: QtBot) -> Iterator[LibraryController]:
     controller = LibraryController()

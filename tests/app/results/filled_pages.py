@@ -42,6 +42,7 @@ from core.findings import Finding, Severity
 from core.gait.phases import Phase
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient
+from devices.files.table_choices import COUNT, NONE, PreviewedSensor, TableChoices, TablePreview
 from devices.files.trial import ImportedSensor, ImportedTrial
 from tests.app.home.course_library import VISITS
 
@@ -138,6 +139,23 @@ def importing_files() -> QWidget:
     page.show_draft("session_2026", "APDM Moveo, Mobility Lab or Motion Studio", draft)
     page.code.set_text("P-0300")
     page.show_unread([tr("Stopped.")], can_try_again=True)
+    return page
+
+
+def importing_a_table() -> QWidget:
+    """A table of two sensors, whose columns were found by their values."""
+    page = ImportPage()
+    time_s = np.arange(500) / 100.0
+    acc, gyr = np.tile([0.4, 9.7, -1.2], (500, 1)), np.sin(time_s)[:, None] * np.array([1.0, -2.0, 3.0])
+    names = ("t", "a_very_long_name_of_a_column [m/s²]", "q", "r", "u", "v", "w")
+    found = TableChoices("utf-8", 1, ",", ".", names[1:4], "m/s2", names[4:], "rad/s", "t", COUNT, NONE, 100.0)
+    sensors = tuple(PreviewedSensor(name, time_s, acc, gyr, 100.0, 5.0, ()) for name in ("one", "two"))
+    rows = (("0.00", "0.4", "9.7", "-1.2", "1.0", "-2.0", "3.0"),) * 3
+    lines = (",".join(names), *map(",".join, rows))
+    preview = TablePreview("f", lines, names, rows, found, found, sensors, is_by_values=True, is_cut=True, refusal=None)
+    page.table.begin(tr("Stopped."), found)
+    page.table.show_preview(preview)
+    page.show_table("session_2026/walk.csv")
     return page
 
 
@@ -296,6 +314,7 @@ PAGES: dict[str, Callable[[], QWidget]] = {
     "empty home": empty_home,
     "import": importing,
     "import of files": importing_files,
+    "import of a table": importing_a_table,
     "questions": questions,
     "no table": no_table,
     "settings": settings,

@@ -23,7 +23,7 @@ NANOSECONDS = 1_788_594_189_000_000_000  # of a day in 2026
 
 
 @dataclass(frozen=True)
-class MadeMotion:
+class MovedSensor:
     """A shank that swings: specific force in m/s2, rates in rad/s, at even times."""
 
     hz: float = 100.0
@@ -49,7 +49,7 @@ class MadeMotion:
             object.__setattr__(self, name, value)
 
 
-LEFT, RIGHT = MadeMotion(), MadeMotion(phase=1.0)
+LEFT, RIGHT = MovedSensor(), MovedSensor(phase=1.0)
 
 
 def write(path: Path, lines: Sequence[str], encoding: str = "utf-8") -> Path:
@@ -78,7 +78,7 @@ def iso(time_s: float, between: str = "T") -> str:
 
 def ximu(folder: Path) -> list[Path]:
     """x-io's x-IMU: packet numbers count all packets, the rate is in the registers; a comma ends each row."""
-    motion = MadeMotion(hz=128.0)
+    motion = MovedSensor(hz=128.0)
     number = 100 + np.cumsum(1 + np.arange(ROWS) % 2)
     head = "Packet number,Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s),Accelerometer X (g),"
     head += "Accelerometer Y (g),Accelerometer Z (g),Magnetometer X (G),Magnetometer Y (G),Magnetometer Z (G)"
@@ -159,7 +159,7 @@ def phyphox_german(folder: Path) -> list[Path]:
 
 def phyphox_apart(folder: Path) -> list[Path]:
     """phyphox in two files of different rates."""
-    fast = MadeMotion(hz=200.0, rows=2 * ROWS)
+    fast = MovedSensor(hz=200.0, rows=2 * ROWS)
     acc = (
         '"Time (s)","Acceleration x (m/s^2)","Acceleration y (m/s^2)","Acceleration z (m/s^2)","Absolute acceleration"'
     )
@@ -278,37 +278,39 @@ def windows_excel(folder: Path) -> list[Path]:
 
 
 @dataclass(frozen=True)
-class MadeFile:
+class ReadLayout:
     """What has to come out: the sensors' motion in order, and findings that have to be among those reported."""
 
     write: Callable[[Path], list[Path]]
-    motions: tuple[MadeMotion, ...] = (LEFT,)
+    motions: tuple[MovedSensor, ...] = (LEFT,)
     findings: tuple[str, ...] = ()
     atol: float = 2e-4  # of m/s2 and rad/s: digits that the layout has
     lost: int = 0
 
 
 READ = {
-    "x-IMU": MadeFile(ximu, (MadeMotion(hz=128.0),), ("packet_numbers",)),
-    "WitMotion, two sensors": MadeFile(witmotion_of_two, (LEFT, RIGHT)),
-    "WitMotion, Chinese": MadeFile(witmotion_chinese),
-    "WitMotion, text": MadeFile(witmotion_text),
-    "MetaBase": MadeFile(metabase, (LEFT, RIGHT), ("joined_files",)),
-    "Sensor Logger": MadeFile(sensor_logger, findings=("joined_files",)),
-    "phyphox, German": MadeFile(phyphox_german),
-    "phyphox, two files": MadeFile(phyphox_apart, (MadeMotion(hz=200.0, rows=2 * ROWS),), ("joined_files",), atol=0.1),
-    "Physics Toolbox": MadeFile(physics_toolbox, atol=2e-3),
-    "Axivity AX6": MadeFile(axivity),
-    "LPMS": MadeFile(lpms, (LEFT, RIGHT)),
-    "Blue Trident": MadeFile(blue_trident),
-    "NGIMU": MadeFile(ngimu),
-    "PicoQuake": MadeFile(picoquake, findings=("unit_by_size",)),
-    "KFall": MadeFile(kfall, findings=("unit_by_size",)),
-    "SensorLog": MadeFile(sensorlog),
-    "Excel, Unicode": MadeFile(excel_unicode),
-    "R": MadeFile(of_r, lost=1),
-    "NumPy": MadeFile(of_numpy),
-    "Excel, Windows": MadeFile(windows_excel),
+    "x-IMU": ReadLayout(ximu, (MovedSensor(hz=128.0),), ("packet_numbers",)),
+    "WitMotion, two sensors": ReadLayout(witmotion_of_two, (LEFT, RIGHT)),
+    "WitMotion, Chinese": ReadLayout(witmotion_chinese),
+    "WitMotion, text": ReadLayout(witmotion_text),
+    "MetaBase": ReadLayout(metabase, (LEFT, RIGHT), ("joined_files",)),
+    "Sensor Logger": ReadLayout(sensor_logger, findings=("joined_files",)),
+    "phyphox, German": ReadLayout(phyphox_german),
+    "phyphox, two files": ReadLayout(
+        phyphox_apart, (MovedSensor(hz=200.0, rows=2 * ROWS),), ("joined_files",), atol=0.1
+    ),
+    "Physics Toolbox": ReadLayout(physics_toolbox, atol=2e-3),
+    "Axivity AX6": ReadLayout(axivity),
+    "LPMS": ReadLayout(lpms, (LEFT, RIGHT)),
+    "Blue Trident": ReadLayout(blue_trident),
+    "NGIMU": ReadLayout(ngimu),
+    "PicoQuake": ReadLayout(picoquake, findings=("unit_by_size",)),
+    "KFall": ReadLayout(kfall, findings=("unit_by_size",)),
+    "SensorLog": ReadLayout(sensorlog),
+    "Excel, Unicode": ReadLayout(excel_unicode),
+    "R": ReadLayout(of_r, lost=1),
+    "NumPy": ReadLayout(of_numpy),
+    "Excel, Windows": ReadLayout(windows_excel),
 }
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ from tests.devices.files.test_public_layouts import (
     RIGHT,
     ROWS,
     G,
-    MadeMotion,
+    MovedSensor,
     a_letter,
     a_picture,
     commas_in_commas,
@@ -35,7 +34,7 @@ NAMES = ("t", "p", "q", "r", "u", "v", "w")  # of which none states anything
 STATED = TableChoices(acc=("p", "q", "r"), gyr=("u", "v", "w"), time="t")
 
 
-def table(path: Path, *, names: tuple[str, ...] = NAMES, motion: MadeMotion = LEFT, by: str = ",") -> Path:
+def table(path: Path, *, names: tuple[str, ...] = NAMES, motion: MovedSensor = LEFT, by: str = ",") -> Path:
     body = rows_of(motion.time_s, motion.acc, motion.gyr, by=by)
     return write(path, [by.join(names), *body])
 
@@ -130,8 +129,8 @@ def test_each_choice_can_be_stated(name: str, tmp_path: Path) -> None:
 
 
 def test_a_wrong_choice_shows_why_it_cannot_be(tmp_path: Path) -> None:
-    def refusal(**stated: Any) -> str:
-        found = preview_of(table(tmp_path / "a.csv"), replace(STATED, **stated)).refusal
+    def refusal(**stated: object) -> str:
+        found = preview_of(table(tmp_path / "a.csv"), replace(STATED, **stated)).refusal  # type: ignore[arg-type]  # of several types
         assert found is not None
         return str(found)
 

@@ -1,0 +1,313 @@
+"""Tables that nobody knows: shown as they would be read, changed by keys, confirmed, and kept for their program."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.home.importing.import_page import ImportPage
+from app.home.importing.table_form import TableForm
+from app.system.known_tables import known_tables
+from app.widgets.choice import Choice
+from core.samples import ImuBlock
+from tests.app.home.home_library import WAIT_MS
+from tests.app.home.importing.test_importing import choices, shown
+from tests.devices.files.test_public_layouts import LEFT, RIGHT, no_header, rows_of, write
+from tests.devices.files.test_table_preview import NAMES, table
+
+READY = "1 sensor · 8.0 s · 100 Hz · gravity 9.9 m/s²"
+
+
+def explain(qtbot: QtBot, home: Home, *paths: Path) -> TableForm:
+    """Read files of which one has to be explained."""
+    home.importing.read(paths)
+    qtbot.waitUntil(home.importing.page.table.isVisible, timeout=WAIT_MS)
+    return home.importing.page.table
+
+
+def press_to(choice: Choice, data: object) -> None:
+    """Go to a line by the arrow keys."""
+    choice.setFocus()
+    steps = choice.findData(data) - choice.currentIndex()
+    assert choice.findData(data) >= 0
+    for _ in range(abs(steps)):
+        QTest.keyClick(choice, Qt.Key.Key_Down if steps > 0 else Qt.Key.Key_Up)
+
+
+def wait_for(qtbot: QtBot, form: TableForm, words: str) -> None:
+    qtbot.waitUntil(lambda: words in form.notice.text, timeout=WAIT_MS)
+
+
+def press_enter(home: Home) -> None:
+    widget = home.window().focusWidget()
+    assert widget is not None
+    QTest.keyClick(widget, Qt.Key.Key_Return)
+
+
+def wait_for_draft(qtbot: QtBot, home: Home) -> ImportPage:
+    page = home.importing.page
+    qtbot.waitUntil(lambda: home.current is page and page.draft.isVisible(), timeout=WAIT_MS)
+    return page
+
+
+def blocks(home: Home) -> dict[str, ImuBlock]:
+    """What was read, by the sensors' names."""
+    found = home.importing.shown
+    assert found is not None
+    assert found.draft is not None
+    return {one.name: one.block for recording in found.draft.recordings for one in recording.trial.sensors}
+
+
+def test_a_table_that_nobody_knows_is_confirmed_by_one_key(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    form = explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv"))
+    stated = shown(home.importing.page)
+    assert "its columns do not identify acceleration and angular rates on three axes: t, p, q, r, u, v, w." in stated
+    assert form.notice.text == f"{READY} The columns were found by their values alone. Check them."
+    assert "p acceleration x" in form.rows.as_text()
+    assert home.bar.primary.text() == "Use these columns"
+    press_enter(home)
+    page = wait_for_draft(qtbot, home)
+    assert "1 recording of any program (CSV, named columns)" in shown(page)
+    assert choices(page)["Position of walk_left_thigh"].currentText() == "Left thigh"
+    (block,) = blocks(home).values()
+    np.testing.assert_allclose(block.acc_m_s2, LEFT.acc, atol=1e-5)
+    np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
+
+
+def test_a_table_that_is_recognised_is_not_asked_about(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    home.importing.read([table(tmp_path / "walk.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))])
+    page = wait_for_draft(qtbot, home)
+    assert not page.table.isVisible()
+
+
+Which = Callable[[TableForm], Choice]
+NO_TABLE = "The file format is not recognised, and the file is no table of numbers."
+CHANGES: dict[str, tuple[Which, object, str]] = {
+    "encoding": (lambda form: form.encoding, "utf-16", NO_TABLE),
+    "header": (lambda form: form.header_line, 0, READY),
+    "separator": (lambda form: form.separator, ";", NO_TABLE),
+    "decimal": (lambda form: form.decimal, ",", '"0.000000" in column t is not a number.'),
+    "time": (lambda form: form.time, "none", "The samples in the file have no times."),
+    "unit of time": (lambda form: form.time_unit, "ms", "The times in the file give 1e+05 samples per second"),
+    "sensor": (lambda form: form.sensor, "p", 'The column "p" holds 800 different names of sensors.'),
+    "acceleration x": (lambda form: form.acc[0], "u", 'The column "u" is chosen for two quantities.'),
+    "acceleration y": (lambda form: form.acc[1], "r", "2 columns are chosen for the three axes: p, r, r."),
+    "acceleration none": (lambda form: form.acc[0], "none", "This file has no acceleration"),
+    "unit of acceleration": (lambda form: form.acc_unit, "g", "is labelled g, but its median of 9.87 matches"),
+    "angular rate z": (lambda form: form.gyr[2], "t", 'The column "t" is chosen for two quantities.'),
+    "angular rate none": (lambda form: form.gyr[0], "none", "This file has no angular rates"),
+    "unit of angular rate": (lambda form: form.gyr_unit, "deg/s", READY),
+}
+
+
+def face(form: TableForm) -> tuple[str, ...]:
+    """Words, rows and curves as a screen reader has them."""
+    return (form.notice.text, form.rows.as_text(), form.gyr_curves.accessibleDescription())
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_each_choice_changes_what_is_shown(qtbot: QtBot, home: Home, tmp_path: Path, change: str) -> None:
+    form = explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv"))
+    before = face(form)
+    which, data, words = CHANGES[change]
+    press_to(which(form), data)
+    qtbot.waitUntil(lambda: face(form) != before, timeout=WAIT_MS)
+    assert words in form.notice.text
+    assert home.bar.primary.isEnabled() == words.startswith(("1 sensor", "This file has no"))
+    form.detect.click()
+    qtbot.waitUntil(lambda: face(form) == before, timeout=WAIT_MS)
+
+
+def test_nothing_is_confirmed_before_it_was_read_as_stated(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    form = explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv"))
+    assert home.bar.primary.isEnabled()
+    press_to(form.acc_unit, "g")
+    assert not home.bar.primary.isEnabled()
+    press_enter(home)
+    assert form.isVisible()
+    wait_for(qtbot, form, "is labelled g")
+    press_enter(home)
+    assert form.isVisible()
+
+
+def test_what_was_stated_is_kept_for_tables_of_the_same_columns(
+    qtbot: QtBot, home: Home, tmp_path: Path, tables_kept: Path
+) -> None:
+    form = explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv", names=("t", "P-0147", "q", "r", "u", "v", "w")))
+    press_to(form.gyr_unit, "deg/s")
+    qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    (kept,) = known_tables().values()
+    assert (kept.acc, kept.gyr, kept.gyr_unit, kept.time) == (("2", "3", "4"), ("5", "6", "7"), "deg/s", "1")
+    assert "P-0147" not in tables_kept.read_text()
+    home.escape()
+    again = table(tmp_path / "other" / "walk_right_shank.csv", names=("t", "P-0147", "q", "r", "u", "v", "w"))
+    home.importing.read([again])
+    page = wait_for_draft(qtbot, home)
+    assert not page.table.isVisible()
+    (block,) = blocks(home).values()
+    np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr), atol=1e-6)
+    other = table(tmp_path / "third.csv")  # whose columns have other names
+    explain(qtbot, home, other)
+
+
+def test_what_is_kept_can_be_changed_and_forgotten(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    path = table(tmp_path / "walk_left_thigh.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))
+    home.importing.read([path])
+    page = wait_for_draft(qtbot, home)
+    page.draft.columns.click()
+    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    press_to(page.table.gyr_unit, "deg/s")
+    qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    (block,) = blocks(home).values()
+    np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr), atol=1e-6)
+    page.draft.columns.click()
+    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    assert page.table.gyr_unit.currentData() == "deg/s"
+    page.table.detect.click()
+    qtbot.waitUntil(lambda: page.table.gyr_unit.currentData() == "rad/s", timeout=WAIT_MS)
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    (block,) = blocks(home).values()
+    np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
+    assert known_tables() == {}
+
+
+def test_tables_of_one_program_are_asked_about_once(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    table(tmp_path / "walk_left_thigh.csv")
+    table(tmp_path / "walk_left_shank.csv", motion=RIGHT)
+    form = explain(qtbot, home, tmp_path)
+    assert "Table 1 of 2: " in shown(home.importing.page)
+    assert form.acc[0].currentData() == "p"
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    found = blocks(home)
+    np.testing.assert_allclose(found["walk_left_thigh"].acc_m_s2, LEFT.acc, atol=1e-5)
+    np.testing.assert_allclose(found["walk_left_shank"].acc_m_s2, RIGHT.acc, atol=1e-5)
+
+
+def test_tables_of_two_programs_are_asked_about_each(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    table(tmp_path / "walk_left_thigh.csv")
+    table(tmp_path / "walk_right_thigh.csv", names=("T", *NAMES[1:]))
+    explain(qtbot, home, tmp_path)
+    press_enter(home)
+    qtbot.waitUntil(lambda: "Table 2 of 2: " in shown(home.importing.page), timeout=WAIT_MS)
+    home.bar.quiet[0].click()
+    page = wait_for_draft(qtbot, home)
+    assert [*blocks(home)] == ["walk_left_thigh"]
+    assert "walk_right_thigh.csv: the file format is not recognised" in shown(page)
+    page.explain.click()
+    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    assert "walk_right_thigh.csv" in shown(page)
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    assert {*blocks(home)} == {"walk_left_thigh", "walk_right_thigh"}
+
+
+def test_a_table_without_names_is_confirmed_each_time_as_it_was(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    """Seven columns are those of many programs."""
+    form = explain(qtbot, home, *no_header(tmp_path / "one"))
+    press_to(form.gyr_unit, "deg/s")
+    qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    home.escape()
+    form = explain(qtbot, home, *no_header(tmp_path / "two"))
+    assert form.gyr_unit.currentData() == "deg/s"
+
+
+def test_accelerometer_and_gyroscope_in_files_of_their_own_are_joined(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    write(tmp_path / "left_thigh_acc.csv", ["t,p,q,r", *rows_of(LEFT.time_s, LEFT.acc)])
+    write(tmp_path / "left_thigh_gyro.csv", ["t,p,q,r", *rows_of(LEFT.time_s, LEFT.gyr)])
+    form = explain(qtbot, home, tmp_path)
+    assert "This file has no angular rates; they must be in a second file of this sensor." in form.notice.text
+    press_enter(home)
+    wait_for(qtbot, form, "This file has no acceleration; it must be in a second file of this sensor.")
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    (block,) = blocks(home).values()
+    np.testing.assert_allclose(block.acc_m_s2, LEFT.acc, atol=1e-5)
+    np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
+
+
+def test_samples_without_times_need_a_rate(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    body = rows_of(LEFT.acc[:, 0], LEFT.acc[:, 1:], LEFT.gyr)
+    form = explain(qtbot, home, write(tmp_path / "left_thigh.csv", [",".join(NAMES[1:]), *body]))
+    wait_for(qtbot, form, "The samples in the file have no times.")
+    assert form.rate.isVisible()
+    form.rate.line_edit.setFocus()
+    QTest.keyClicks(form.rate.line_edit, "100")
+    wait_for(qtbot, form, READY)
+    QTest.keyClick(form.rate.line_edit, Qt.Key.Key_Return)
+    wait_for_draft(qtbot, home)
+    home.escape()
+    form = explain(qtbot, home, tmp_path / "left_thigh.csv")  # another recording may have another rate
+    assert form.rate.value == 100.0
+
+
+def test_files_that_are_not_called_alike_are_made_one_recording(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    names = ("time_s", "ax", "ay", "az", "gx", "gy", "gz")
+    table(tmp_path / "A7F2.csv", names=names)
+    alone = tmp_path / "B801.csv"
+    table(alone, names=names, motion=RIGHT)
+    home.importing.read([tmp_path])
+    page = wait_for_draft(qtbot, home)
+    assert "Session 1 of 2" in shown(page)
+    page.draft.combine.click()
+    qtbot.waitUntil(lambda: len(page.draft.sites) == 2, timeout=WAIT_MS)
+    assert "Session 1 of 2" not in shown(page)
+    assert not page.draft.combine.isVisible()
+    home.escape()
+    home.importing.read([alone])
+    assert not wait_for_draft(qtbot, home).draft.combine.isVisible()
+
+
+def test_what_was_left_out_stays_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    explain(qtbot, home, table(tmp_path / "walk.csv"))
+    home.bar.quiet[0].click()
+    page = home.importing.page
+    qtbot.waitUntil(page.choose_files.isVisible, timeout=WAIT_MS)
+    assert "walk.csv: the file format is not recognised" in shown(page)
+    page.explain.click()
+    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    home.escape()
+    assert home.current is home.page
+    assert known_tables() == {}
+
+
+def test_a_session_that_was_taken_in_does_not_come_again(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    table(tmp_path / "A.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))
+    table(tmp_path / "b" / "B.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))
+    unknown = table(tmp_path / "c" / "C.csv")
+    home.importing.read([tmp_path / "A.csv", tmp_path / "b", unknown])
+    page = wait_for_draft(qtbot, home)
+    assert "Session 1 of 2" in shown(page)
+    home.importing.leave_out()
+    page.explain.click()
+    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    assert "Session 1 of 2" in shown(page)
+    assert [*blocks(home)] == ["B"]
+    home.importing.leave_out()
+    assert [*blocks(home)] == ["C"]
+
+
+def test_that_choices_cannot_be_kept_is_reported(qtbot: QtBot, home: Home, tmp_path: Path, tables_kept: Path) -> None:
+    tables_kept.parent.parent.mkdir(exist_ok=True)
+    tables_kept.parent.write_text("a file in the way")
+    explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv"))
+    reports: list[str] = []
+    home.importing.reported.connect(lambda what, _remedy: reports.append(what))
+    press_enter(home)
+    wait_for_draft(qtbot, home)
+    assert reports
+    assert reports[0].startswith("The meaning of the columns could not be stored (")
