@@ -8,7 +8,7 @@ from app.cli.arguments import LOCALES, LibrarySession
 from app.cli.places import read_session
 from app.cli.progress import finding_lines
 from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
-from app.exports.local_csv import TableForm, rewrite_tables
+from app.exports.local_csv import CsvForm, rewrite_tables
 from app.exports.result_folder import OWN_SESSION, check_place, written_beside
 from app.system.progress import Report
 from app.wording.body import name_of
@@ -42,10 +42,10 @@ def choices_of(args: argparse.Namespace) -> AnalysisChoices:
     return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
 
 
-def form_of(args: argparse.Namespace) -> TableForm:
+def form_of(args: argparse.Namespace) -> CsvForm:
     """How tables are written; raises FileRefusedError where a comma would be both."""
     usual, decimal = LOCALES[args.locale]
-    form = TableForm(args.sep or usual, decimal)
+    form = CsvForm(args.sep or usual, decimal)
     if form.separator == form.decimal:
         raise FileRefusedError(
             "--sep",

@@ -18,7 +18,7 @@ MARKED = "utf-8-sig"
 
 
 @dataclass(frozen=True, slots=True)
-class TableForm:
+class CsvForm:
     """How the tables of results separate their cells and write a fraction."""
 
     separator: str = COMMA
@@ -26,10 +26,10 @@ class TableForm:
 
     @property
     def is_default(self) -> bool:
-        return self == TableForm()
+        return self == CsvForm()
 
 
-def rewrite_tables(folder: Path, form: TableForm) -> None:
+def rewrite_tables(folder: Path, form: CsvForm) -> None:
     """Give every table of results in `folder` and below another form, and say so in its metadata; raises OSError."""
     if form.is_default:
         return
@@ -40,7 +40,7 @@ def rewrite_tables(folder: Path, form: TableForm) -> None:
         _describe(metadata, form)
 
 
-def _rewrite(path: Path, form: TableForm) -> None:
+def _rewrite(path: Path, form: CsvForm) -> None:
     beside = path.with_name(f".{path.name}")
     with path.open(encoding="utf-8", newline="") as old, beside.open("w", encoding=MARKED, newline="") as new:
         rows = csv.reader(old)
@@ -60,7 +60,7 @@ def _figures(file: str, header: Sequence[str]) -> list[int]:
     return [] if file == COLUMNS else [k for k, name in enumerate(header) if unit_of(file, name)]
 
 
-def _describe(metadata: Path, form: TableForm) -> None:
+def _describe(metadata: Path, form: CsvForm) -> None:
     """As CSV on the Web has it: the separator of each table, and what is before the fraction of each number."""
     found = json.loads(metadata.read_text(encoding="utf-8"))
     for table in found["tables"]:

@@ -14,7 +14,7 @@ from app.importing.untrusted_files import preview_foreign_table
 from app.system.known_tables import keep_table, known_tables
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
-from app.wording.translation import tr
+from app.wording.translation import later, tr
 from app.workers.library_controller import LibraryController
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import NO_CHOICES, NONE, TableChoices, TablePreview
@@ -193,7 +193,8 @@ def _previewed(path: Path, stated: TableChoices) -> TablePreview:
 
 def _unreadable(path: Path, problem: OSError) -> FileRefusedError:
     why = problem.strerror or type(problem).__name__
-    return FileRefusedError(path.name, "the file or folder cannot be read ({why})", "Check the permissions", why=why)
+    what, remedy = later("the file or folder cannot be read ({why})"), later("Check the permissions")
+    return FileRefusedError(path.name, what, remedy, why=why)
 
 
 def _nobody_waits() -> None:

@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.exports.local_csv import TableForm, rewrite_tables
+from app.exports.local_csv import CsvForm, rewrite_tables
 from app.exports.result_folder import write_results
 from core.results import Analysis
 from core.session import Session
 from devices.files.session_folder import write_session
 from tests.app.cli.test_cli import analyse, files_in
 
-GERMAN = TableForm(";", ",")
+GERMAN = CsvForm(";", ",")
 FIGURE = re.compile(r"-?\d+\.\d+")
 
 
@@ -28,9 +28,9 @@ def typed(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
     return replace(session, recordings=recordings), analysis
 
 
-@pytest.mark.parametrize("form", [GERMAN, TableForm("\t", "."), TableForm(";", "."), TableForm("\t", ",")])
+@pytest.mark.parametrize("form", [GERMAN, CsvForm("\t", "."), CsvForm(";", "."), CsvForm("\t", ",")])
 def test_every_cell_is_what_it_was_but_for_the_comma_of_figures(
-    typed: tuple[Session, Analysis], tmp_path: Path, form: TableForm
+    typed: tuple[Session, Analysis], tmp_path: Path, form: CsvForm
 ) -> None:
     for name in ("as_ever", "other"):
         (tmp_path / name).mkdir()
@@ -86,7 +86,7 @@ def test_the_metadata_states_what_separates_cells_and_fractions(
 def test_the_default_form_touches_nothing(typed: tuple[Session, Analysis], tmp_path: Path) -> None:
     write_results(*typed, tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
-    rewrite_tables(tmp_path, TableForm())
+    rewrite_tables(tmp_path, CsvForm())
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
 
 
