@@ -132,6 +132,8 @@ def test_the_manual(qtbot: QtBot, topic: Topic) -> None:
 
 def test_the_patients_screen_states_what_it_shows(qtbot: QtBot) -> None:
     window = patient_screen()
-    opened(qtbot, window)
+    qtbot.addWidget(window)
+    with qtbot.waitExposed(window):
+        window.show()  # it takes no focus
     assert complaints(window) == []
     assert window.accessibleName().startswith("Left knee")

@@ -289,7 +289,8 @@ def test_the_page_of_conditions_states_what_was_turned_and_against_which(aligned
     turned = tuple(replace(one, alignment=changes.get(one.name)) for one in visit.session.recordings)
     reported = replace(aligned, visit=AnalysedVisit(replace(visit.session, recordings=turned), visit.analysis))
     without, page = (
-        re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(one))[-1].split())) for one in (aligned, reported)
+        re.sub("[\u2066-\u2069]", "", " ".join(" ".join(texts(make_report(one))[-2:]).split()))
+        for one in (aligned, reported)
     )
     assert "Foot, anterior screw ½ turn out" in page
     assert "Pylon +3 mm" in page
