@@ -55,6 +55,7 @@ ALIKE = {
         "Rate",
         "Sensor",
         "x-io x-IMU3",
+        "x-IMU (CSV)",
         "Shimmer3, LogAndStream",
         "Timed-up-and-go-Test",
         "Movella DOT",

@@ -186,14 +186,8 @@ def _previewed(path: Path, stated: TableChoices) -> TablePreview:
     """How a table is read, or that reading it was ended."""
     try:
         return preview_foreign_table(path, stated, _nobody_waits)
-    except (FileRefusedError, OSError) as problem:
-        refusal = problem if isinstance(problem, FileRefusedError) else _unreadable(path, problem)
+    except FileRefusedError as refusal:
         return TablePreview("", (), (), (), stated, stated, (), is_by_values=False, is_cut=False, refusal=refusal)
-
-
-def _unreadable(path: Path, problem: OSError) -> FileRefusedError:
-    why = problem.strerror or type(problem).__name__
-    return FileRefusedError(path.name, "the file or folder cannot be read ({why})", "Check the permissions", why=why)
 
 
 def _nobody_waits() -> None:
