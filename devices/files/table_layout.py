@@ -31,7 +31,7 @@ COMMENT = "#"
 NAMELESS = "nameless "  # begins the fingerprint of what has no header
 BLANKS = re.compile(rb"[ \t]+")
 RATE = re.compile(
-    r"(?:sampl\w*[ _-]*(?:rate|freq\w*)|(?:data|update|output)[ _-]*rate|\bfs\b|abtastrate)"
+    r"(?:sampl\w{0,9}[ _-]{0,3}(?:rate|freq\w{0,9})|(?:data|update|output)[ _-]{0,3}rate|\bfs\b|abtastrate)"
     r"[^0-9\n]{0,14}(\d+(?:[.,]\d+)?)",
     re.IGNORECASE | re.ASCII,
 )

@@ -1,6 +1,7 @@
 """Spoilt tables that nobody knows raise nothing but refusals, end nothing, and are read as they are shown."""
 
 import random
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -82,3 +83,36 @@ def test_utf_16_is_stated_of_what_is_none(tmp_path: Path) -> None:
     assert isinstance(refusal, FileRefusedError)
     unmarked = write(tmp_path / "b.csv", table(tmp_path / "a.csv").read_text().splitlines(), "utf-16-be")
     assert preview_of(unmarked, replace(STATED, encoding="utf-16")).refusal is None
+
+
+LONG = {
+    "digits": "9" * 100_000 + "x",
+    "digits and points": "9" * 100_000 + "." + "9" * 100_000 + "..",
+    "blanks": " " * 100_000 + "x",
+    "a time and blanks": "12:30:00" + " " * 100_000 + "x",
+    "a date and blanks": "2026-11-28" + " " * 100_000 + "x",
+    "exponents": "1e" * 50_000,
+    "rates": "sampl_" * 20_000,
+}
+
+
+@pytest.mark.parametrize("cell", LONG.values(), ids=LONG)
+def test_a_long_cell_is_looked_at_once(cell: str, tmp_path: Path) -> None:
+    """By the work that it takes: ten times the cell takes about ten times as long, not a hundred."""
+
+    def took_s(length: int) -> float:
+        body = rows_of(LEFT.time_s[:50], LEFT.acc[:50], LEFT.gyr[:50])
+        lines = [
+            cell[: length // 2] + cell[-length // 2 :],
+            ",".join(NAMES),
+            *body[:20],
+            f"{cell[-length:]},1,2,3,4,5,6",
+        ]
+        path = write(tmp_path / "a.csv", [*lines, *body[20:]])
+        began_s = time.process_time()
+        preview_of(path, NO_CHOICES)
+        return time.process_time() - began_s
+
+    took_s(100)
+    short_s, long_s = min(took_s(2_000) for _ in range(3)), min(took_s(40_000) for _ in range(2))
+    assert long_s < 20 * max(short_s, 0.02)
