@@ -519,6 +519,9 @@ class Home(QWidget):
 
     def _on_import_asked(self) -> None:
         self._go_to(self.importing.page)
+        scroll = self._pages.currentWidget()
+        assert isinstance(scroll, QScrollArea)
+        scroll.verticalScrollBar().setValue(0)  # what is shown next is read from its beginning
 
     def _on_import_left(self) -> None:
         self._go_to(self.page)

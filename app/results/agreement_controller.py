@@ -76,7 +76,7 @@ class AgreementController(QObject):
 
     def show(self, session: "Session", analysis: Analysis) -> None:
         """Compare this session; what was found of the same analysis stays."""
-        if analysis is not self._analysis or (self._study is None and self._background.is_idle):
+        if analysis is not self._analysis or (self._study is None and not self._background.is_busy):
             self.stop()
             self._session, self._analysis, self._study = session, analysis, None
             self._page.show_nothing()

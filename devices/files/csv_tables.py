@@ -127,8 +127,7 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
     time = time_column(layout, choices, found)
     is_text = bool(time) and is_text_time(layout, time, choices)
     sensor = sensor_column(layout, choices)
-    if choices.are_any:
-        _refuse_shared(found, time, sensor, where)
+    found = _apart(found, time, sensor, where)
     if choices.time:
         found = tuple(replace(one, time=time, counter="") for one in found)
     numeric = {name for one in found for name in one.names()}
@@ -213,8 +212,8 @@ def time_column(layout: TableLayout, choices: TableChoices, found: Sequence[Sens
     return times.pop() if len(times) == 1 else ""
 
 
-def _refuse_shared(found: Sequence[SensorColumns], time: str, sensor: str, where: str) -> None:
-    """Refuse a column that is stated to be two things; raises FileRefusedError."""
+def _apart(found: Sequence[SensorColumns], time: str, sensor: str, where: str) -> tuple[SensorColumns, ...]:
+    """The sensors without what is stated to be something else; raises FileRefusedError for one column as two."""
     used = [name for one in found for name in (*one.acc, *one.gyr)] + [name for name in (time, sensor) if name]
     twice = next((name for name in used if used.count(name) > 1), None)
     if twice is not None:
@@ -224,6 +223,17 @@ def _refuse_shared(found: Sequence[SensorColumns], time: str, sensor: str, where
             "Choose another column for one of them",
             name=quoted(twice),
         )
+    others = {time, sensor}
+    return tuple(
+        replace(
+            one,
+            mag=() if others & set(one.mag) else one.mag,
+            quat=() if others & set(one.quat) else one.quat,
+            time="" if one.time == sensor else one.time,
+            counter="" if one.counter in others else one.counter,
+        )
+        for one in found
+    )
 
 
 def is_text_time(layout: TableLayout, time: str, choices: TableChoices) -> bool:

@@ -47,7 +47,8 @@ def stamps_of(
     elif named.time and len(table.columns[named.time]) == len(is_there):
         values = _unwrapped(table, table.columns[named.time][rows], rows, named.time)
         meaning = meaning_of(named.time, table.units.get(named.time, ""))
-        stated = unit_of(Quantity.TIME, table.units.get(named.time, "")) or (meaning.unit if meaning else "")
+        of_name = meaning.unit if meaning and meaning.unit in SECONDS else ""  # another quantity's may be stated
+        stated = unit_of(Quantity.TIME, table.units.get(named.time, "")) or of_name
         stated = COUNT if table.units.get(named.time) == COUNT else stated
         unit = _time_unit(table, named.time, stated, values, reported_hz, findings)
         if unit == COUNT:

@@ -2,6 +2,7 @@
 
 import csv
 import re
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import BinaryIO
@@ -103,10 +104,9 @@ def cells_of(text: str, delimiter: str) -> list[str]:
 
 def refuse_twice(names: list[str], where: str, place: str) -> None:
     """Refuse a header that gives a name twice; raises FileRefusedError."""
-    for name in names:
-        if names.count(name) > 1:
-            here = f"{where}, {place}"
-            raise FileRefusedError(here, "column {name} appears twice", CORRECT_IT, name=quoted(name))
+    twice = next((name for name, count in Counter(names).items() if count > 1), None)
+    if twice is not None:
+        raise FileRefusedError(f"{where}, {place}", "column {name} appears twice", CORRECT_IT, name=quoted(twice))
 
 
 def _text(raw: bytes, number: int, where: str) -> str:

@@ -24,13 +24,14 @@ from devices.files.text_files import CONTROLS, encoding_of, open_text
 
 HEAD_BYTES = 262_144
 MOST_LINES = 400  # by which a layout is found
+MOST_COLUMNS = 2000  # dozens of sensors, with all that each may give
 LEAST_NUMBERS = 3  # of a row: three axes
 FIRST_ROWS = 20
 COMMENT = "#"
 NAMELESS = "nameless "  # begins the fingerprint of what has no header
 BLANKS = re.compile(rb"[ \t]+")
 RATE = re.compile(
-    r"(?:sampl\w*[ _-]*(?:rate|freq\w*)|(?:data|update|output)[ _-]*rate|\bfs\b|abtastrate)"
+    r"(?:sampl\w{0,9}[ _-]{0,3}(?:rate|freq\w{0,9})|(?:data|update|output)[ _-]{0,3}rate|\bfs\b|abtastrate)"
     r"[^0-9\n]{0,14}(\d+(?:[.,]\d+)?)",
     re.IGNORECASE | re.ASCII,
 )
@@ -112,6 +113,14 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES, most_b
     _refuse_divided_decimals(where, lines[first].number, delimiter, names, rows[0])
     while len(names) > width and not names[-1]:
         names.pop()  # a separator follows the last name, and no last cell
+    if max(width, len(names)) > MOST_COLUMNS:
+        raise FileRefusedError(
+            where,
+            "the table has {count} columns, more than {most}",
+            "Export only the columns with times, acceleration and angular rates",
+            count=max(width, len(names)),
+            most=MOST_COLUMNS,
+        )
     names = names_of([*names, *[""] * (width - len(names))])
     unique = _all_different(names)
     units = dict(zip(unique, cells[units_at], strict=False)) if units_at is not None else {}
@@ -131,7 +140,7 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES, most_b
         header_line=lines[at].number if at is not None else 0,
         units={name: unit for name, unit in units.items() if unit},
         rows=tuple(map(tuple, rows)),
-        twice=next((name for name in names if names.count(name) > 1), ""),
+        twice=next((name for name, count in Counter(names).items() if count > 1), ""),
         rate_hz=_stated_rate(before),
         most_bytes=most_bytes,
     )
@@ -271,13 +280,15 @@ def _refuse_divided_decimals(where: str, line: int, delimiter: str, names: Seque
 
 def _all_different(names: Sequence[str]) -> list[str]:
     """Number the names that were given before: "X", "X (2)"."""
-    unique: list[str] = []
+    unique: dict[str, None] = {}
+    numbers: Counter[str] = Counter()
     for name in names:
-        number, free = 2, name
+        free = name
         while free in unique:
-            free, number = f"{name} ({number})", number + 1
-        unique.append(free)
-    return unique
+            numbers[name] += 1
+            free = f"{name} ({numbers[name] + 1})"
+        unique[free] = None
+    return [*unique]
 
 
 def _stated_rate(before: Sequence[str]) -> float | None:

@@ -86,6 +86,10 @@ def _found(layout: TableLayout, choices: TableChoices, sensors: Sequence[Preview
         time = time_column(layout, choices, known)
     except FileRefusedError:
         time = ""
+    try:
+        sensor = sensor_column(layout, choices)
+    except FileRefusedError:
+        sensor = choices.sensor
     unit = CLOCK if time and is_text_time(layout, time, choices) else choices.time_unit
     stated = str(numbers.get("time", ""))
     if not unit and time:
@@ -101,7 +105,7 @@ def _found(layout: TableLayout, choices: TableChoices, sensors: Sequence[Preview
         gyr_unit=choices.gyr_unit or (str(numbers.get("gyr_unit", "")) if one.gyr else ""),
         time=time or NONE,
         time_unit=unit,
-        sensor=sensor_column(layout, choices) or NONE,
+        sensor=sensor or NONE,
         rate_hz=choices.rate_hz or layout.rate_hz,
     )
 
@@ -115,6 +119,7 @@ def _understood(sensors: Sequence[PreviewedSensor]) -> Mapping[str, float | int 
 def _with_guesses(layout: TableLayout, stated: TableChoices) -> TableChoices:
     """What somebody states, and what values show of columns that no name explains."""
     try:
+        sensor = sensor_column(layout, stated)
         if stated.acc or stated.gyr or columns_in(layout, stated):
             return stated
     except FileRefusedError:
@@ -125,7 +130,7 @@ def _with_guesses(layout: TableLayout, stated: TableChoices) -> TableChoices:
     if not time:
         rising = [k for k in np.flatnonzero(is_number) if _rises(values[:, k])]
         time = layout.names[rising[0]] if rising else ""
-    taken = {time, sensor_column(layout, stated)}
+    taken = {time, sensor}
     free = [k for k, name in enumerate(layout.names) if is_number[k] and name not in taken and not _rises(values[:, k])]
     triples = [(k, k + 1, k + 2) for k in free if {k + 1, k + 2} <= set(free)]
     acc = next((places for places in triples if _is_force(values[:, places])), None)

@@ -31,7 +31,9 @@ from devices.files.table_header import (
 )
 from devices.files.text_files import UTF_8, open_text
 
-NUMBER = re.compile(r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf(inity)?)?\s*", re.IGNORECASE | re.ASCII)
+NUMBER = re.compile(  # what fits one part fits no other: a cell of a million digits is looked at once
+    r"\s*+[+-]?((\d++(\.\d*+)?|\.\d++)(e[+-]?\d++)?|nan|inf(inity)?)?\s*+", re.IGNORECASE | re.ASCII
+)
 NO_VALUE = ("na", "n/a", "#n/a", "nan", "null", "none", "-", "--")  # what programs write for nothing
 EMPTY_CELLS = [" " * n for n in range(9)]  # Arrow compares whole cells, and a blank or two is still nothing
 EMPTY_CELLS += [blank + cell for word in NO_VALUE for cell in (word, word.upper(), word.title()) for blank in ("", " ")]

@@ -14,9 +14,9 @@ DAY_S, HOUR_S = 86_400.0, 3600.0
 FIRST_DAY = date(2020, 1, 1).toordinal()  # a recent one: numbers are finer
 # a date of any form or none; hours, minutes and seconds, whose fraction follows a point, a comma or a colon
 TIME = re.compile(
-    r"(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T\s,_]+)?"
+    r"(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T\s,_]{1,4})?"
     r"(?:(?P<hour>\d{1,2}):)?(?P<minute>\d{1,2}):(?P<second>\d{1,2})(?:[.,:](?P<part>\d{1,9}))?"
-    r"\s*(?P<half>[ap]\.?m\.?)?\s*(?:Z|UTC|[+-]\d{2}:?\d{2})?",
+    r"\s{0,4}(?P<half>[ap]\.?m\.?)?\s{0,4}(?:Z|UTC|[+-]\d{2}:?\d{2})?",
     re.IGNORECASE | re.ASCII,
 )
 ISO_DATE = re.compile(r"(\d{4})[-./](\d{1,2})[-./](\d{1,2})", re.ASCII)

@@ -52,7 +52,7 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "matlab": "Small files that MATLAB wrote, without sensors, and files laid out as these are. No recording was at "
     "hand.",
     "parquet": "Files with columns of many names and units, made for it.",
-    "csv": "Files with columns of many names and units, made for it.",
+    "csv": "Files with columns of many names and units, and in the published layouts of sixteen programs, made for it.",
 }
 
 

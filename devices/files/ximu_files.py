@@ -23,6 +23,7 @@ from devices.files.trial import OF_XIMU, REGISTERS, ImportedSensor, ImportedTria
 
 FORMAT, MODEL, G = "ximu", "x-IMU", 9.80665
 NUMBER = "packet number"
+NUMBERS = "Packet number", "Packet Number"
 GYR = tuple(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")
 ACC = tuple(f"Accelerometer {axis} (g)" for axis in "XYZ")
 MAG = tuple(f"Magnetometer {axis} (G)" for axis in "XYZ")
@@ -71,8 +72,11 @@ def ximu_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
 
 def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     where = path.name
-    number = "Packet number"
-    table = read_csv(path, where, {number, number.title(), *GYR, *ACC, *MAG}, delimiters=DELIMITERS, keep_others=False)
+    table = read_csv(path, where, {*NUMBERS, *GYR, *ACC, *MAG}, delimiters=DELIMITERS, keep_others=False)
+    missing = [name for name in (*GYR, *ACC) if name not in table.numbers]
+    missing += [NUMBERS[0]] if not set(NUMBERS) & set(table.numbers) else []
+    if missing:
+        raise FileRefusedError(where, "column {name} is missing", EXPORT_AGAIN, name=missing[0])
     rate_hz = asked_hz or _registered_rate(path)
     if rate_hz is None:
         raise FileRefusedError(
@@ -81,7 +85,7 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
             "Put the file {registers} beside it, or give the sampling rate (--rate)",
             registers=(registers_beside(path) or [Path(REGISTERS)])[0].name,
         )
-    counts = table.numbers.get(number, table.numbers.get(number.title(), np.empty(0)))
+    counts = table.numbers[next(name for name in NUMBERS if name in table.numbers)]
     times = _times(counts, rate_hz, table, where)
     acc, gyr = table.matrix(ACC)[times.is_kept] * G, np.radians(table.matrix(GYR)[times.is_kept])
     name = _name(path)

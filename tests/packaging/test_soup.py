@@ -25,7 +25,7 @@ def name_of(part: str) -> str:
 
 def needed() -> set[str]:
     """Everything that the program needs with any of its extras; what builds and tests it is none."""
-    extras = set(metadata.metadata(PROJECT).get_all("Provides-Extra") or ()) - {"dev", "bundle", "opensim"}
+    extras = set(metadata.metadata(PROJECT).get_all("Provides-Extra") or ()) - {"dev", "build", "bundle", "opensim"}
     found: set[tuple[str, frozenset[str]]] = set()
     waiting = [(PROJECT, frozenset(extras))]
     while waiting:

@@ -44,6 +44,7 @@ from tests.devices.files import (
     test_mvnx,
     test_opensim_orientations,
     test_parquet_tables,
+    test_public_layouts,
     test_shimmer_card,
     test_shimmer_tables,
     test_xdf,
@@ -228,6 +229,13 @@ def importers() -> dict[str, Spoilable]:
         latency = test_bids_motion.other("LATENCY", "n/a", np.arange(ROWS) / 100.0, unit="s")
         motion = test_bids_motion.bids(Path(folder), [latency, *channels], "export")
         files = {name: motion.with_name(name).read_bytes() for name in ("export_motion.tsv", "export_channels.tsv")}
+        (counted,) = test_public_layouts.ximu(Path(folder))
+        registers = counted.with_name("00033_Registers.csv")
+        whole = {path.name: path.read_bytes() for path in (counted, registers)}
+    for key, place in zip(("ximu", "ximu-registers"), whole, strict=True):
+        beside = {name: content for name, content in whole.items() if name != place}
+        read, is_stream = read_of("ximu", counted.name), key == "ximu-registers"  # of which one line is needed
+        found[key] = Spoilable(whole[place], place, read, may_be_a_link=False, beside=beside, is_stream=is_stream)
     for key, place in zip(("bids-motion", "bids-channels"), files, strict=True):
         beside = {name: content for name, content in files.items() if name != place}
         read = read_of("bids-motion", "export_motion.tsv")

@@ -61,6 +61,7 @@ class Importing(LongWork):
         self.page = ImportPage()
         self._explaining = Explaining(controller, self.page.table, self)
         self._explaining.asked.connect(self._on_table_asked)
+        self._explaining.changed.connect(self.page.changed)
         self._explaining.ended.connect(self._on_explained)
         self._explaining.reported.connect(self.reported)
         self.page.code.line_edit.returnPressed.connect(self.take_in)

@@ -36,7 +36,8 @@ class OpenTable:
 class Explaining(QObject):
     """`choices`: what was confirmed since `begin`, by path."""
 
-    asked = Signal()  # a table is in the form, or what can be done with it is different
+    asked = Signal()  # another table is in the form
+    changed = Signal()  # what can be done with it is different
     ended = Signal()  # none is left
     reported = Signal(str, str)
 
@@ -138,7 +139,7 @@ class Explaining(QObject):
             self._preview = None
             self._number += 1
             self._settling.start()
-            self.asked.emit()
+            self.changed.emit()
 
     def _read(self) -> None:
         if self._table is None:
@@ -169,8 +170,8 @@ class Explaining(QObject):
                 return
         self._preview = preview
         self._form.show_preview(preview)
-        self._is_shown = True
-        self.asked.emit()
+        was_shown, self._is_shown = self._is_shown, True
+        (self.changed if was_shown else self.asked).emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.reported.emit(what, remedy)
@@ -186,15 +187,8 @@ def _previewed(path: Path, stated: TableChoices) -> TablePreview:
     """How a table is read, or that reading it was ended."""
     try:
         return preview_foreign_table(path, stated, _nobody_waits)
-    except (FileRefusedError, OSError) as problem:
-        refusal = problem if isinstance(problem, FileRefusedError) else _unreadable(path, problem)
+    except FileRefusedError as refusal:
         return TablePreview("", (), (), (), stated, stated, (), is_by_values=False, is_cut=False, refusal=refusal)
-
-
-def _unreadable(path: Path, problem: OSError) -> FileRefusedError:
-    why = problem.strerror or type(problem).__name__
-    what, remedy = later("the file or folder cannot be read ({why})"), later("Check the permissions")
-    return FileRefusedError(path.name, what, remedy, why=why)
 
 
 def _nobody_waits() -> None:

@@ -90,10 +90,10 @@ class TableForm(QWidget):
         return [*layout, *columns, *axes, self.detect, self.shown, self.rows]
 
     def focus(self) -> None:
-        """Give the focus to the first choice that is open, else to the first column."""
+        """Give the focus to the first choice that is open, else to the first of all, below what is stated of them."""
         choices = [*self.acc, self.acc_unit, *self.gyr, self.gyr_unit, self.time, self.time_unit]
         open_ones = (one for one in choices if one.isEnabled() and one.currentData() == "")
-        next(open_ones, self.acc[0]).setFocus()
+        next(open_ones, self.encoding).setFocus()
 
     def begin(self, why: str, stated: TableChoices) -> None:
         """Begin with another table, of which this is known; `why`: it was not recognised."""

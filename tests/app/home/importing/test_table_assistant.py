@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QScrollArea
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
@@ -131,6 +132,7 @@ def test_nothing_is_confirmed_before_it_was_read_as_stated(qtbot: QtBot, home: H
     press_enter(home)
     assert form.isVisible()
     wait_for(qtbot, form, "is labelled g")
+    assert form.acc_unit.hasFocus()  # where somebody goes on
     press_enter(home)
     assert form.isVisible()
 
@@ -179,6 +181,20 @@ def test_what_is_kept_can_be_changed_and_forgotten(qtbot: QtBot, home: Home, tmp
     (block,) = blocks(home).values()
     np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
     assert known_tables() == {}
+
+
+def test_what_is_shown_next_is_seen_from_its_beginning(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    home.resize(900, 560)
+    table(tmp_path / "A.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))
+    home.importing.read([tmp_path / "A.csv", table(tmp_path / "walk.csv")])
+    page = wait_for_draft(qtbot, home)
+    area = next(one for one in home.findChildren(QScrollArea) if one.widget() is page)
+    area.verticalScrollBar().setValue(area.verticalScrollBar().maximum())
+    assert area.verticalScrollBar().value() > 0
+    page.explain.click()
+    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    assert area.verticalScrollBar().value() == 0
+    assert page.table.encoding.hasFocus()
 
 
 def test_tables_of_one_program_are_asked_about_once(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
