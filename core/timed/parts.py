@@ -2,8 +2,8 @@
 
 A rise is from the thighs' having left the seat by a tenth of the way to standing until they are a tenth from it; a
 sitting the same the other way round. A turn is from when the body has turned by a tenth of the turn's angle to when a
-tenth is left. The ways out and back are what lies between. A patient may sit down while still turning: these two parts
-then overlap.
+tenth is left; the turn to sit lasts until the sitting begins, also of who stands for a while or sits down while still
+turning. The ways out and back are what lies between. So the parts follow each other, and together are the test's time.
 
 These borders are our own. Published ones use the trunk, where no sensor of ours need be: Salarian et al. 2010 (doi
 10.1109/TNSRE.2010.2047606) separate sit-to-stand, gait, turn and turn-to-sit, the last two as one; so their times are
@@ -43,14 +43,15 @@ def parts_of(
     unknown = (math.nan, math.nan)
     rise = next(((a.left_seat_s, a.upright_s) for a in seat.rises if start_s <= a.left_seat_s < end_s), unknown)
     sits = [(a.left_upright_s, a.seated_s) for a in seat.sittings if start_s < a.seated_s <= end_s]
+    sit = sits[-1] if sits else unknown
     out, about = turn_edges(way, turns)
     borders = {
         PartOfUpAndGo.RISE: rise,
         PartOfUpAndGo.WALK_OUT: (rise[1], out[0]),
         PartOfUpAndGo.TURN: out,
         PartOfUpAndGo.WALK_BACK: (out[1], about[0]),
-        PartOfUpAndGo.TURN_TO_SIT: about,
-        PartOfUpAndGo.SIT: sits[-1] if sits else unknown,
+        PartOfUpAndGo.TURN_TO_SIT: (about[0], max(about[0], sit[0]) if sits else about[1]),
+        PartOfUpAndGo.SIT: sit,
     }
     return tuple(UpAndGoPart(part, *borders[part]) for part in PartOfUpAndGo)
 

@@ -55,10 +55,10 @@ def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
     """Read one CSV; raises FileRefusedError where it cannot be read or its times step back."""
     where = path.name
     with io.TextIOWrapper(open_text(path), encoding="utf-8-sig", newline="") as file:
-        beginning = file.read(HEAD_LETTERS)
-        file.seek(0)
-        reader = csv.reader(file, delimiter=max(DELIMITERS, key=beginning.count))
         try:
+            beginning = file.read(HEAD_LETTERS)
+            file.seek(0)
+            reader = csv.reader(file, delimiter=max(DELIMITERS, key=beginning.count))
             head = list(islice(reader, HEAD_LINES))
             first = head[0][0].strip() if head and head[0] else ""
             if first.startswith(MONITORS):

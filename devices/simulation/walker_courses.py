@@ -84,7 +84,7 @@ class CourseTruth:
     `left_seat_s`, `upright_s`: (r,): of each rise: the thighs have left the seat; they are as in standing.
     `climbs_m`: (k,): of each foot: how much higher each of its contacts is than the one before.
     `parts_s`: of an up and go, from when to when each part was planned: a rise and a turn from a tenth to nine tenths
-    of the way.
+    of the way, the turn to sit until the sitting begins.
     """
 
     time_s: FloatArray
@@ -307,7 +307,7 @@ def _parts(turns: Sequence[CourseTurn], changes: Sequence[SeatChange]) -> dict[s
         "walk_out": (up[-1][1], out.start_s),
         "turn": (out.start_s, out.end_s),
         "walk_back": (out.end_s, back.start_s),
-        "turn_to_sit": (back.start_s, back.end_s),
+        "turn_to_sit": (back.start_s, down[0][0]),
         "sit": down[0],
     }
 

@@ -246,7 +246,7 @@ def turned_unseen_by_the_pelvis() -> Session:
     *before, timed = session.recordings
     planned = replace(timed, test=PlannedTest(TimedProtocol.UP_AND_GO))
     session = replace(session, recordings=(*before, planned))
-    return changed(session, lambda b: replace(b, gyr_rad_s=0.3 * b.gyr_rad_s), (Site.PELVIS,), ("walk 1",))
+    return changed(session, lambda b: replace(b, gyr_rad_s=0.1 * b.gyr_rad_s), (Site.PELVIS,), ("walk 1",))
 
 
 def walked_backward() -> Session:

@@ -14,7 +14,7 @@ from app.importing.untrusted_files import preview_foreign_table
 from app.system.known_tables import keep_table, known_tables
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
-from app.wording.translation import later, tr
+from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import NO_CHOICES, NONE, TableChoices, TablePreview

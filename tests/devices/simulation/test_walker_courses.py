@@ -141,11 +141,10 @@ def test_the_parts_of_an_up_and_go_follow_each_other() -> None:
         parts_s = simulate_course(
             replace(draw_course(CourseKind.UP_AND_GO, seed), sites=(Site.LEFT_FOOT,))
         ).truth.parts_s
-        names = ["rise", "walk_out", "turn", "walk_back", "turn_to_sit"]
-        borders = [parts_s[name][0] for name in names] + [parts_s["turn_to_sit"][1]]
-        assert list(parts_s) == [*names, "sit"]
-        assert np.all(np.diff(borders) > 0.0)
-        assert parts_s["sit"][1] > parts_s["turn_to_sit"][1]
+        assert list(parts_s) == ["rise", "walk_out", "turn", "walk_back", "turn_to_sit", "sit"]
+        starts, ends = zip(*parts_s.values(), strict=True)
+        assert starts[1:] == ends[:-1]
+        assert np.all(np.subtract(ends, starts) > 0.0)
 
 
 def test_laps_lie_between_two_cones() -> None:

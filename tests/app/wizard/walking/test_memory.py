@@ -185,13 +185,13 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     assert texts(step.bar()) == ("Start walk", ["Patient screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
     assert "Choose no test, or record walks live" in step.bar().note
-    assert texts(step.bar()) == ("Start timed Up and Go", ["Record walks live", "Patient screen"])
+    assert texts(step.bar()) == ("Start Timed Up and Go", ["Record walks live", "Patient screen"])
     step.on_intent(RUN)
     assert not visit.recordings.is_recording
     press(step, "Record walks live")
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
-    assert texts(step.bar()) == ("Start timed Up and Go", ["Patient screen"])
+    assert texts(step.bar()) == ("Start Timed Up and Go", ["Patient screen"])
     assert "Timed tests need" not in step.bar().note
 
 
