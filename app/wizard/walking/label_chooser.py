@@ -25,8 +25,6 @@ class LabelChooser(Wrapping):
         self._choice = ""
         self.own = Field(tr("Other condition for the next walk"), placeholder=tr("Other"), has_label=False)
         self.own.setParent(self)
-        # it was made before the labels: Tab would come to its box in its place
-        self.own.setFocusProxy(None)  # type: ignore[arg-type]  # the stubs know no None, which takes the proxy away
         self.setAccessibleName(tr("Next condition"))
         scaled(self.own.setFixedWidth, FIELD_WIDTH)
         self.own.committed.connect(self._on_own_committed)

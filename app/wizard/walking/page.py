@@ -105,9 +105,9 @@ class WalkingPage(QWidget):
         controls: list[QWidget] = [*self.patient_controls.controls, *bench, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit]
-        controls += [field.line_edit for field in self.timed_result.entry.fields]
-        controls += [self.next.course.field.line_edit, self.next.test]
+        controls += [*self.next.chooser.stops, self.next.chooser.own]
+        controls += self.timed_result.entry.fields
+        controls += [self.next.course.field, self.next.test]
         return [one for one in controls if one in bench or one.isVisibleTo(self)]
 
     def focus(self) -> None:
