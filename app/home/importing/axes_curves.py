@@ -33,7 +33,7 @@ class AxesCurves(Painted):
         self._name = name
         self._time_s: FloatArray = np.empty(0)
         self._values: FloatArray = np.empty((0, 3))
-        self._low, self._high = 0.0, 1.0
+        self._low = self._high = 0.0
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(name)
 
