@@ -62,8 +62,10 @@ def set_angle(
 
 def set_angle_in_words(found: SetAngle) -> str:
     """Say what was set and what is measured: "Set 3.0° plantarflexion, measured 2.9° (±0.4°)."."""
-    of_others = tr("Other changes are not measured.") if found.has_other_parts else ""
-    return " ".join(filter(None, [_in_words(found), of_others]))
+    stated = _in_words(found)
+    if not found.has_other_parts:
+        return stated
+    return f"{stated} {tr('Other changes are not measured.')}" if stated else tr("The change itself is not measured.")
 
 
 def _in_words(found: SetAngle) -> str:

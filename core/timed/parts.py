@@ -2,7 +2,7 @@
 
 A rise is from the thighs' having left the seat by a tenth of the way to standing until they are a tenth from it; a
 sitting the same the other way round. A turn is from when the body has turned by a tenth of the turn's angle to when a
-tenth is left; the turn to sit lasts until the sitting begins, also of who stands for a while or sits down while still
+tenth is left; the turn to sit lasts until the sitting begins, also of who waits or sits down while still
 turning. The ways out and back are what lies between. So the parts follow each other, and together are the test's time.
 
 These borders are our own. Published ones use the trunk, where no sensor of ours need be: Salarian et al. 2010 (doi

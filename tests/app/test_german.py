@@ -245,8 +245,8 @@ WITH_POINTS = (  # files, drawings and what a terminal prints: read by programs,
         "app/reports/agreement/printed.py",
         "app/reports/agreement/tables.py",
     ),
-    *("app/exports/csv_report.py", "app/summary/targets.py", "app/cli/compare.py", "app/summary/alignments.py"),
-    *("app/cohort/study/groups.py", "app/summary/drawn_legs.py", "app/system/tables.py"),
+    *("app/exports/csv_report.py", "app/summary/targets.py", "app/cli/compare.py", "app/cli/import_files.py"),
+    *("app/summary/alignments.py", "app/cohort/study/groups.py", "app/summary/drawn_legs.py", "app/system/tables.py"),
 )
 
 

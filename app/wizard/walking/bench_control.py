@@ -1,6 +1,5 @@
 """What joins the bench to the visit: which alignments are shown, what the next walk is walked with, what leads back."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
@@ -173,17 +172,14 @@ class Bench(QObject):
             self._notes(found, side, parts),
         )
 
-    def _with_set_angle(self, answer: Answer, found: Comparison, side: Side) -> Answer:
-        """Put before what belongs to an answer what was set at the foot, beside what is measured of it."""
-        shown = set_angle(found, found.parts[1], found.against, side, self.chain.changes)
-        words = set_angle_in_words(shown) if shown is not None else ""
-        return replace(answer, then=" ".join(filter(None, (words, answer.then))))
-
     def _notes(self, found: Comparison | None, side: Side, parts: tuple[Part, ...]) -> tuple[str, ...]:
-        """How walks of one alignment vary, and what is shown otherwise than before."""
+        """What was set at the foot beside what is measured, how walks vary, and what is shown otherwise than before."""
         if found is None or (self._is_behind and not self._shown):
             return ()
-        return tuple(filter(None, [variation_sentence(found, side, parts), self._shown_before.note(found, side)]))
+        shown = set_angle(found, found.parts[1], found.against, side, self.chain.changes)
+        words = set_angle_in_words(shown) if shown is not None else ""
+        every = [words, variation_sentence(found, side, parts), self._shown_before.note(found, side)]
+        return tuple(filter(None, every))
 
     @property
     def next_title(self) -> str:
@@ -230,7 +226,7 @@ class Bench(QObject):
                 tr("Record a walk without a timed test or a target on the patient screen."),
             )
         if found is not None:
-            return self._with_set_angle(bench_answer(found, side), found, side)
+            return bench_answer(found, side)
         first = tr("{letter} is the starting point. Change one thing, enter the change, then record a walk.")
         return Answer(
             Outcome.OPEN, first.format(letter=shown.letter), tr("Enter the change before you record its walk.")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.results.compared_words import not_reported_in_words
@@ -13,7 +13,7 @@ from app.summary.beside import change_on_curve
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
 from app.summary.walk_figures import why_in_words
-from app.theme.current import current_theme, on_theme
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
@@ -32,6 +32,9 @@ from core.verdicts.model import worst
 LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 320
 MORE_FOR_CHANGES = 60  # px: where there is room, which the curves have else
 BETWEEN = 12
+ONE_PLACES = ((0, 0), (1, 0), (1, 0), (1, 0))  # row and column of tabs, alignments, curves and differences
+TABBED_PLACES = ((0, 1), (0, 0, 2, 1), (1, 1), (1, 1))  # and of how many rows and columns
+BESIDE_PLACES = ((0, 0), (1, 0), (1, 1), (1, 2))
 ANY_WIDTH = 16_777_215  # Qt's own
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
@@ -55,7 +58,7 @@ class BenchState:
 
 
 class BenchView(QWidget):
-    """Three cards; where they have not all room beside one another, one at a time."""
+    """Three cards; where they have not all room, curves or differences beside the alignments, or one at a time."""
 
     accessible_role = QAccessible.Role.Grouping
 
@@ -164,26 +167,38 @@ class BenchView(QWidget):
         words.setSpacing(2)
         mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
         head = lay_out(QHBoxLayout(), mark, (words, 1), spacing=12)
-        row = lay_out(QHBoxLayout(), self.alignments, (self._curves, 1), self.differences, spacing=BETWEEN)
-        lay_out(QVBoxLayout(self), head, self.tabs, (row, 1), margins=0, spacing=12)
+        self._cards = QGridLayout()
+        scaled(self._cards.setSpacing, BETWEEN)
+        self._cards.setRowStretch(1, 1)
+        lay_out(QVBoxLayout(self), head, (self._cards, 1), margins=0, spacing=12)
 
     def _arrange(self) -> None:
-        px, choice = current_theme().px, self.tabs.choice
+        px = current_theme().px
         list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
         curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
         changes = max(px(DIFFERENCES), self.differences.needed)
         spare = self._room - list_width - curves - changes - 2 * px(BETWEEN)
-        is_tabbed = self._is_compact or spare < 0
+        is_one = self._is_compact or self._room < list_width + max(curves, changes) + px(BETWEEN)
+        is_tabbed = is_one or spare < 0
         changes += min(spare // 2, px(MORE_FOR_CHANGES)) if spare > 0 else 0
+        is_new = is_one and self.tabs.segments[0].isHidden()
+        self.tabs.set_offered(ALIGNMENTS, is_one)
+        if is_new:  # they were in sight before
+            self.tabs.choose(ALIGNMENTS)
+        choice = self.tabs.choice
         self.tabs.setVisible(is_tabbed)
-        self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
+        self._curves_column.setDirection(ACROSS if is_one else DOWN)
+        places = ONE_PLACES if is_one else TABBED_PLACES if is_tabbed else BESIDE_PLACES
         cards: tuple[tuple[str, QWidget, int], ...] = (
-            (ALIGNMENTS, self.alignments, list_width),
+            (ALIGNMENTS, self.alignments, 0 if is_one else list_width),
             (CURVES, self._curves, 0),
-            (CHANGES, self.differences, changes),
+            (CHANGES, self.differences, 0 if is_tabbed else changes),
         )
+        self._cards.setColumnStretch(0, int(is_one))
+        self._cards.setColumnStretch(1, int(not is_one))
+        for widget, place in zip((self.tabs, *(card for _, card, _ in cards)), places, strict=True):
+            self._cards.addWidget(widget, *place)
         for key, card, width in cards:
-            card.setVisible(not is_tabbed or choice == key)
-            is_fixed = width and not is_tabbed
-            card.setMinimumWidth(width if is_fixed else 0)
-            card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
+            card.setVisible(choice == key or not is_tabbed or (not is_one and key == ALIGNMENTS))
+            card.setMinimumWidth(width)
+            card.setMaximumWidth(width or ANY_WIDTH)

@@ -175,7 +175,7 @@ def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(qtbot: QtB
     assert ("not compared" in stance) is is_biased
 
 
-def test_what_was_set_at_the_foot_is_stated_before_what_belongs_to_the_answer() -> None:
+def test_what_was_set_at_the_foot_is_stated_beside_what_is_measured() -> None:
     plantar = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, angle_deg=3.0),))
     visit = bench_visit()
     walks = visit.evaluation.analysis.recordings[:2]
@@ -189,10 +189,10 @@ def test_what_was_set_at_the_foot_is_stated_before_what_belongs_to_the_answer() 
     visit.evaluation.analysis = replace(visit.evaluation.analysis, recordings=walks)
     state = Bench(cast(Visit, visit)).state()
     assert state is not None
-    assert state.answer.then.startswith("Set 3.0° plantarflexion, measured 2.8° (±0.7°). ")
+    assert state.notes[0] == "Set 3.0° plantarflexion, measured 2.8° (±0.7°)."
     without = Bench(cast(Visit, bench_visit())).state()
     assert without is not None
-    assert "plantarflexion" not in without.answer.then
+    assert without.notes[0] == "The change itself is not measured."
 
 
 def test_under_ten_strides_nothing_is_judged() -> None:
@@ -546,6 +546,27 @@ def test_as_the_window_widens_the_cards_come_apart_once(page: WalkingPage) -> No
         is_tabbed.append(page.bench.tabs.isVisible())
     assert is_tabbed == sorted(is_tabbed, reverse=True)
     assert set(is_tabbed) == {False, True}
+
+
+@pytest.mark.usefixtures("pseudo_language")
+def test_where_three_have_no_room_curves_and_differences_take_turns_beside_the_alignments(page: WalkingPage) -> None:
+    page.resize(1000, 500)
+    bench = page.bench
+    assert [one.isVisible() for one in bench.tabs.segments] == [False, True, True]
+    assert (bench.alignments.isVisible(), bench.frames[0].isVisible(), bench.differences.isVisible()) == (
+        True,
+        True,
+        False,
+    )
+    bench.tabs.segments[2].click()
+    assert (bench.alignments.isVisible(), bench.frames[0].isVisible(), bench.differences.isVisible()) == (
+        True,
+        False,
+        True,
+    )
+    bench.focus_entry()
+    assert bench.alignments.fields.parts.hasFocus()
+    assert bench.frames[0].isVisible()
 
 
 def test_in_a_small_window_the_next_change_is_reported_without_scrolling(page: WalkingPage) -> None:

@@ -61,6 +61,9 @@ def test_a_figure_that_a_further_walk_changes_is_stated_with_what_it_was() -> No
     assert shown.note(pair(more, A), Side.LEFT) == ""
 
 
+NOT_MEASURED = "The change itself is not measured."
+
+
 def test_a_new_walk_takes_the_place_of_the_pair_with_a_word_and_leaves_its_figures() -> None:
     visit = bench_visit()
     everything = visit.evaluation.session, visit.recordings.every
@@ -72,17 +75,17 @@ def test_a_new_walk_takes_the_place_of_the_pair_with_a_word_and_leaves_its_figur
     before = bench.state()
     assert before is not None
     assert before.found is not None
-    assert before.notes == ()
+    assert before.notes == (NOT_MEASURED,)
     bench.begun()
     visit.evaluation.session, visit.evaluation.analysis = everything[0], analysis
     visit.recordings.every = visit.recordings.walks = everything[1]
     after = bench.state()
     assert after is not None
-    assert after.notes == ("Now C − B; before: B − A.",)
+    assert after.notes == (NOT_MEASURED, "Now C − B; before: B − A.")
     bench.choose(1, is_beside=False)
     again = bench.state()
     assert again is not None
-    assert again.notes == ()
+    assert again.notes == (NOT_MEASURED,)
     assert (again.answer, again.rows[1].title) == (before.answer, before.rows[1].title)
 
 
