@@ -59,12 +59,14 @@ class ChangeEntry:
     """The next change while it is entered: each part has its figures and words, and `part` is the one in hand.
 
     `known`: what programs and settings are now: what they were before the change, unless somebody enters it.
+    `has_knee`: whether the knee is the prosthesis's, as far as is known; a unit that is not there is not offered.
     """
 
     def __init__(self) -> None:
         self.part = ProsthesisPart.FOOT_FRONT_SCREW
         self.is_program = False
         self.known = KnownStates()
+        self.has_knee = True
         self._figures: dict[ProsthesisPart, dict[str, float]] = {}
         self._texts: dict[ProsthesisPart, str] = {}
         self._names: dict[ProsthesisPart, dict[str, str]] = {}
@@ -77,6 +79,14 @@ class ChangeEntry:
     @topic.setter
     def topic(self, topic: EntryTopic) -> None:
         self.part, self.is_program = topic
+
+    @property
+    def topics(self) -> list[EntryTopic]:
+        """What can be entered, and what was already."""
+        entered = {change.part for change in self.parts} | {self.part}
+        return [
+            one for one in TOPICS if self.has_knee or one.part is not ProsthesisPart.KNEE_UNIT or one.part in entered
+        ]
 
     def figure(self, name: str) -> float:
         """Of the part in hand: `angle_deg`, `turns`, `shift_mm` or `height_mm`."""

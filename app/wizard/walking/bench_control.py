@@ -20,7 +20,7 @@ from app.wording.alignment import change_lines, to_do_in_words
 from app.wording.recordings import is_alignment, name_in_words
 from app.wording.translation import tr
 from core.alignment import AlignmentChange
-from core.body import Side
+from core.body import JointKind, Side
 from core.session import Recording
 
 if TYPE_CHECKING:
@@ -160,6 +160,7 @@ class Bench(QObject):
         if shown is not None and beside is not None and beside is not shown:
             found = Comparison(Contrast.CONDITIONS, (beside, shown), is_simulated=is_simulated)
         self.entry.known = self.chain.known
+        self.entry.has_knee = JointKind.KNEE.of(side) in self._visit.prosthetic_joints
         drawn = found.parts if found is not None else [shown] if shown is not None else []
         return BenchState(
             self._answer(found, side, shown),

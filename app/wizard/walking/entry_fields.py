@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QWidget
 
@@ -10,7 +10,7 @@ from app.theme.current import scaled
 from app.widgets.choice import Choice
 from app.widgets.field import Field, NumberField
 from app.widgets.text import Text
-from app.wizard.walking.bench import NAMES, NUMBERS, TOPICS, ChangeEntry
+from app.wizard.walking.bench import NAMES, NUMBERS, ChangeEntry, EntryTopic
 from app.wizard.walking.stepper import Stepper
 from app.wording.alignment import change_in_words, direction_words, part_name, setting_text, turns_words
 from app.wording.numbers import MINUS
@@ -38,9 +38,8 @@ class EntryFields(QWidget):
         super().__init__()
         self._entry, self._is_compact = entry, False
         self.parts = Choice(tr("Part"))
-        for topic in TOPICS:
-            words = tr("{part}, program") if topic.is_program else "{part}"
-            self.parts.addItem(words.format(part=part_name(topic.part)))
+        self._topics: list[EntryTopic] = []
+        self._offer()
         self.steppers = {name: Stepper() for name in FIGURES}
         self.words = Field(tr("In words"), has_label=False, placeholder=tr("Free text, optional"), most=MOST_TEXT)
         self.program_before = Field(tr("Program before"), most=MOST_NAME)
@@ -79,8 +78,9 @@ class EntryFields(QWidget):
     def show_entry(self) -> None:
         """Show the next change as `entry` holds it."""
         entry = self._entry
-        if self.parts.currentIndex() != TOPICS.index(entry.topic):
-            self.parts.setCurrentIndex(TOPICS.index(entry.topic))
+        self._offer()
+        if self.parts.currentIndex() != self._topics.index(entry.topic):
+            self.parts.setCurrentIndex(self._topics.index(entry.topic))
         angle_words, shift_words = direction_words(entry.part)
         shown = {
             "angle_deg": (angle_words, "°"),
@@ -137,6 +137,18 @@ class EntryFields(QWidget):
         for typed in (self.words, *self.names.values(), *self.numbers.values()):
             typed.line_edit.installEventFilter(self)
 
+    def _offer(self) -> None:
+        """Fill the chooser with what can be entered."""
+        if self._topics == (topics := self._entry.topics):
+            return
+        self._topics = topics
+        with QSignalBlocker(self.parts):
+            self.parts.clear()
+            for topic in topics:
+                words = tr("{part}, program") if topic.is_program else "{part}"
+                self.parts.addItem(words.format(part=part_name(topic.part)))
+            self.parts.setCurrentIndex(topics.index(self._entry.topic))
+
     def _arrange(self) -> None:
         """Put in place what the chosen topic asks for."""
         steppers = [*self.steppers.values()]
@@ -160,7 +172,7 @@ class EntryFields(QWidget):
         self.reported.emit()
 
     def _on_topic_chosen(self, index: int) -> None:
-        self._entry.topic = TOPICS[index]
+        self._entry.topic = self._topics[index]
         self._arrange()
         self.reported.emit()
 

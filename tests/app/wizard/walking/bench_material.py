@@ -4,7 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.body import Side
+from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method
 from core.session import Recording, RecordingKind, Session
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
@@ -35,6 +35,7 @@ def bench_visit() -> SimpleNamespace:
     every = [SimpleNamespace(details=one, read_back=None) for one in WALKED]
     return SimpleNamespace(
         prosthetic_sides=frozenset({Side.LEFT}),
+        prosthetic_joints=frozenset({Joint.LEFT_KNEE, Joint.LEFT_ANKLE}),
         recordings=SimpleNamespace(every=every, walks=every),
         evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False, has_failed=False),
     )

@@ -195,6 +195,15 @@ def test_what_was_set_at_the_foot_is_stated_beside_what_is_measured() -> None:
     assert without.notes[0] == "The change itself is not measured."
 
 
+def test_below_the_knee_no_knee_unit_is_offered() -> None:
+    visit = bench_visit()
+    bench = Bench(cast(Visit, visit))
+    for joints, has_knee in ((visit.prosthetic_joints, True), (frozenset({Joint.LEFT_ANKLE}), False)):
+        visit.prosthetic_joints = joints
+        assert bench.state() is not None
+        assert bench.entry.has_knee is has_knee
+
+
 def test_under_ten_strides_nothing_is_judged() -> None:
     outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
     assert (outcome, first) == (Outcome.OPEN, "B and A: too few strides to assess a change.")

@@ -20,7 +20,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.bench_view import BenchView
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.body import Side
+from core.body import JointKind, Side
 from core.samples import FloatArray
 from core.session import RecordingKind
 from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S
@@ -112,6 +112,7 @@ def fitted(seed: int) -> SimpleNamespace:
     every = [SimpleNamespace(details=one, read_back=None) for one in named]
     return SimpleNamespace(
         prosthetic_sides=frozenset({side}),
+        prosthetic_joints=frozenset(kind.of(side) for kind in (JointKind.KNEE, JointKind.ANKLE)),
         recordings=SimpleNamespace(
             every=every, walks=[one for one in every if one.details.kind is RecordingKind.WALKING]
         ),

@@ -53,6 +53,21 @@ def test_every_part_is_offered_and_those_with_programs_twice() -> None:
     assert [topic.part for topic in TOPICS if topic.is_program] == [FOOT, KNEE]
 
 
+def test_a_knee_unit_is_offered_where_the_knee_is_the_prosthesis_or_was_entered(
+    fields: EntryFields, entry: ChangeEntry
+) -> None:
+    entry.has_knee = False
+    fields.show_entry()
+    shown = [fields.parts.itemText(k) for k in range(fields.parts.count())]
+    assert len(shown) == len(TOPICS) - 2
+    assert not any("Knee" in name for name in shown)
+    entry.load((TO_2,))
+    fields.show_entry()
+    assert fields.parts.count() == len(TOPICS)
+    chosen(fields, EntryTopic(KNEE))
+    assert entry.topic == EntryTopic(KNEE)
+
+
 def test_the_chooser_decides_what_is_asked_and_each_is_reached_by_tab(fields: EntryFields) -> None:
     assert len(tabs(fields)) == 6  # the chooser, four figures, words
     chosen(fields, EntryTopic(KNEE, is_program=True))
