@@ -6,8 +6,9 @@ import pytest
 from core.body import Side
 from core.samples import FloatArray
 from core.timed.found import NotValid, Rise
+from core.timed.protocols import DEFINITIONS, TimedProtocol
 from core.timed.seat import SeatMotions
-from core.timed.validity import check_laps, check_up_and_go, laps_of, tolerance_m
+from core.timed.validity import check_laps, check_up_and_go, check_whole, laps_of, tolerance_m
 from core.timed.way import BodyWay, FootSteps, turns_of
 
 STEP_S, SPEED_M_S = 0.02, 1.0
@@ -112,3 +113,22 @@ def test_a_way_without_turns_has_no_lap_length() -> None:
 def test_tolerance_grows_with_the_course() -> None:
     assert tolerance_m(3.0) == pytest.approx(0.55)
     assert tolerance_m(30.0) > tolerance_m(10.0)
+
+
+@pytest.mark.parametrize(("lasted_s", "is_whole"), [(119.2, True), (121.0, True), (118.9, False), (121.2, False)])
+def test_a_set_time_is_kept_to_a_second(lasted_s: float, is_whole: bool) -> None:
+    definition = DEFINITIONS[TimedProtocol.TWO_MINUTES]
+    reasons = check_whole(definition, SeatMotions((), ()), (3.0, 3.0 + lasted_s))
+    assert reasons == (() if is_whole else (NotValid.OTHER_TIME,))
+
+
+@pytest.mark.parametrize(("count", "has_thighs", "is_whole"), [(5, True, True), (4, True, False), (0, False, True)])
+def test_five_rises_are_five_where_the_thighs_show_them(count: int, has_thighs: bool, is_whole: bool) -> None:
+    definition = DEFINITIONS[TimedProtocol.SIT_TO_STAND]
+    seat = SeatMotions(tuple(Rise(k, k + 0.8) for k in range(count)), (), has_thighs)
+    reasons = check_whole(definition, seat, (0.0, 5.0))
+    assert reasons == (() if is_whole else (NotValid.FEWER_RISES,))
+
+
+def test_a_walk_between_tapes_may_be_of_any_time_and_needs_no_rise() -> None:
+    assert check_whole(DEFINITIONS[TimedProtocol.TEN_METRES], SeatMotions((), ()), (0.0, 90.0)) == ()
