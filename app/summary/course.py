@@ -17,7 +17,17 @@ from core.goals import OF_LEGS
 from core.parameters import CADENCE, SPEED
 from core.results import Analysis, RecordingAnalysis
 from core.session import Recording
-from core.timed.measures import COLUMNS, PROTOCOLS, MeanOfAttempts, counted_figure, mean_of_attempts, rests_on_feet
+from core.timed.measures import (
+    COLUMNS,
+    PROTOCOLS,
+    MeanOfAttempts,
+    counted_figure,
+    have_one_course,
+    length_of,
+    mean_of_attempts,
+    on_one_course,
+    rests_on_feet,
+)
 from core.verdicts.attempts import compare_attempts, error_between_visits
 from core.verdicts.measurement_error import Difference, Judgement, compare, whisker
 from core.verdicts.model import Assessment, GateReason, Verdict, together, worst
@@ -62,6 +72,7 @@ class CourseTest:
     column: str
     found: MeanOfAttempts
     verdict: Verdict
+    course_m: float = math.nan  # that of all attempts; NaN where any will do, or none is known
 
     @property
     def is_reported(self) -> bool:
@@ -167,17 +178,19 @@ def timed_test_of(column: str, walks: Sequence[RecordingAnalysis]) -> CourseTest
 def _test(column: str, walks: Sequence[RecordingAnalysis]) -> CourseTest:
     """A test over its valid attempts; what rests on the feet's way is read as that way is."""
     values, verdicts = [], []
+    timed = [walk.timed for walk in walks if walk.timed is not None]
+    alike = on_one_course([test for test in timed if test.is_valid] or timed)
     for walk in walks:
         assert walk.timed is not None  # only tests are given
         verdict = Verdict.READ
         if rests_on_feet(walk.timed):
             verdict = together(walk.verdicts.leg(side).distance for side in walk.gait).verdict
         is_reported = Assessment(verdict).is_reported
-        values.append(counted_figure(walk.timed) if is_reported else math.nan)
+        values.append(counted_figure(walk.timed) if is_reported and walk.timed in alike else math.nan)
         verdicts.append(verdict)
     found = mean_of_attempts(values)
     reported = [one for one, value in zip(verdicts, values, strict=True) if math.isfinite(value)]
-    return CourseTest(column, found, worst(reported) if reported else Verdict.NOT_REPORTED)
+    return CourseTest(column, found, worst(reported) if reported else Verdict.NOT_REPORTED, length_of(alike[-1]))
 
 
 def change(
@@ -191,7 +204,7 @@ def change(
     """A figure less that of an earlier visit, judged as between visits; None where one of them has none."""
     if column in PROTOCOLS:
         tests = one.test(column), first.test(column)
-        if tests[0] is None or tests[1] is None:
+        if tests[0] is None or tests[1] is None or not have_one_course(tests[0].course_m, tests[1].course_m):
             return None
         wording = (tests[0].assessment, tests[1].assessment)
         return compare_attempts(column, tests[0].found, tests[1].found, wording, is_chosen_before=is_chosen_before)
@@ -284,6 +297,7 @@ def course_in_json(course: Course) -> dict[str, Any]:
                         "mean": finite(test.found.mean),
                         "attempts": test.found.attempts,
                         "verdict": test.verdict,
+                        "course_m": finite(test.course_m),
                     }
                     for test in one.tests
                 ],
@@ -328,7 +342,13 @@ def _figure_from_json(content: Any) -> CourseFigure:
 
 def _test_from_json(content: Any) -> CourseTest:
     mean = math.nan if content["mean"] is None else content["mean"]
-    return CourseTest(content["column"], MeanOfAttempts(mean, content["attempts"]), Verdict(content["verdict"]))
+    course_m = content.get("course_m")  # earlier versions have none
+    return CourseTest(
+        content["column"],
+        MeanOfAttempts(mean, content["attempts"]),
+        Verdict(content["verdict"]),
+        math.nan if course_m is None else course_m,
+    )
 
 
 def _side(name: str | None) -> Side | None:

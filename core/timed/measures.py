@@ -19,6 +19,7 @@ COLUMNS: Mapping[TimedProtocol, str] = {
     TimedProtocol.UP_AND_GO: "up_and_go_time_s",
     TimedProtocol.SIT_TO_STAND: "sit_to_stand_time_s",
 }
+SAME_COURSE_M = 0.005  # lengths are entered to a centimetre
 PROTOCOLS: Mapping[str, TimedProtocol] = {column: protocol for protocol, column in COLUMNS.items()}
 
 
@@ -55,6 +56,22 @@ def rests_on_feet(test: TimedTest) -> bool:
 def counted_figure(test: TimedTest) -> float:
     """Give the figure that counts in a mean of attempts; NaN also where the test is not valid."""
     return figure_of(test) if test.is_valid else math.nan
+
+
+def length_of(test: TimedTest) -> float:
+    """Give the length that the figure belongs to, m; NaN of a test of a set time, in which any length may be walked."""
+    return test.course_m if test.definition.duration_s is None else math.nan
+
+
+def on_one_course(tests: Iterable[TimedTest]) -> list[TimedTest]:
+    """Leave those that were walked on the course of the last: times of 3 m and of 5 m have no mean."""
+    every = list(tests)
+    return [test for test in every if have_one_course(length_of(test), length_of(every[-1]))]
+
+
+def have_one_course(one_m: float, other_m: float) -> bool:
+    """Return whether two figures may be compared; where a length is not known they are."""
+    return not abs(one_m - other_m) > SAME_COURSE_M
 
 
 def pace_of(test: TimedTest) -> WalkingPace:

@@ -33,8 +33,9 @@ from app.wording.timed_tests import (
     sentences_of,
     why_sentence,
 )
-from app.wording.translation import tr
+from app.wording.translation import figure_text, tr
 from core.timed.found import TimedTest
+from core.timed.measures import length_of, on_one_course
 from core.timed.protocols import PlannedTest, TimedProtocol
 
 BETWEEN = 12
@@ -186,9 +187,12 @@ def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
             name = tr("{walk}, not valid").format(walk=called)
         figures = [""] * len(columns) if found is None else [one.text(one.value(found)) for one in columns]
         rows.append(_row(name, figures, tone))
-    counting = [one.found for one in state.attempts if one.counts and one.found is not None]
+    counting = on_one_course([one.found for one in state.attempts if one.counts and one.found is not None])
     if len(counting) > 1:
         name = tr("Mean of {count}").format(count=len(counting))
+        if len(counting) < sum(one.counts for one in state.attempts):
+            length = figure_text(length_of(counting[-1]), "g")
+            name = tr("Mean of {count} on {length} m").format(count=len(counting), length=length)
         means = means_of(columns, counting)
         bold = (TextCell(one, align=RIGHT, weight=SEMIBOLD) for one in means)
         rows.append(TableRow((TextCell(name, weight=SEMIBOLD), *bold)))

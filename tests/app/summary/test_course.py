@@ -219,3 +219,23 @@ def test_a_test_that_was_broken_off_has_no_value_and_is_kept_as_it_is() -> None:
     assert not test.is_reported
     again = course_from_json(json.loads(json.dumps(course_in_json(found))))
     assert str(again) == str(found)
+
+
+def test_tests_on_two_courses_are_in_no_mean_and_no_change() -> None:
+    def on(*lengths_m: float) -> CourseCondition:
+        walks = [timed(TimedProtocol.UP_AND_GO, time_s=10.0 + k, name=f"walk {k}") for k in range(len(lengths_m))]
+        tests = [
+            replace(one, timed=replace(one.timed, course_m=length_m))
+            for one, length_m in zip(walks, lengths_m, strict=True)
+        ]
+        return only(course(*((one, "shoes") for one in tests)))
+
+    three, mixed, five = on(3.0, 3.0), on(5.0, 3.0), on(5.0)
+    found = [one.test("up_and_go_time_s") for one in (three, mixed, five)]
+    assert [(one.found.mean, one.found.attempts, one.course_m) for one in found if one is not None] == [
+        *((10.5, 2, 3.0), (11.0, 1, 3.0), (10.0, 1, 5.0))
+    ]
+    assert change(mixed, three, "up_and_go_time_s") is not None
+    assert change(five, three, "up_and_go_time_s") is None
+    kept = course_from_json(course_in_json(Course(None, (five,))))
+    assert kept.conditions[0].tests == five.tests

@@ -12,8 +12,10 @@ from core.timed.measures import (
     PROTOCOLS,
     counted_figure,
     figure_of,
+    have_one_course,
     mean_of_attempts,
     mean_pace,
+    on_one_course,
     pace_of,
     rests_on_feet,
 )
@@ -79,3 +81,13 @@ def test_pace_is_over_the_whole_and_over_thirds_of_valid_attempts() -> None:
     assert mean.thirds_m_s[:2] == pytest.approx((1.2, 1.1))
     assert math.isnan(mean.thirds_m_s[2])
     assert mean_pace([]).thirds_m_s == ()
+
+
+def test_times_of_two_courses_have_no_mean_and_distances_of_two_laps_have() -> None:
+    near, far = (replace(built_test(TimedProtocol.UP_AND_GO), course_m=length_m) for length_m in (3.0, 5.0))
+    assert on_one_course([near, far, near]) == [near, near]
+    assert on_one_course([near, far]) == [far]
+    laps = [replace(built_test(TimedProtocol.SIX_MINUTES), course_m=length_m) for length_m in (20.0, 30.0)]
+    assert on_one_course(laps) == laps
+    assert on_one_course([]) == []
+    assert [have_one_course(3.0, other_m) for other_m in (3.0, 2.44, math.nan)] == [True, False, True]

@@ -36,6 +36,14 @@ def test_the_mean_is_of_the_attempts_that_count(qtbot: QtBot) -> None:
     assert rows[3:] == [["Mean of 2", "8.5", "1.18", "105"]]
 
 
+def test_the_mean_is_of_one_course_and_names_it(qtbot: QtBot) -> None:
+    short = replace(attempt(1, 9.0), found=replace(TEN, course_m=6.0))
+    long = [attempt(k, time_s) for k, time_s in ((2, 12.0), (3, 14.0))]
+    on_ten = [replace(one, found=replace(one.found, course_m=10.0)) for one in long if one.found is not None]
+    assert [row[:2] for row in shown(qtbot, short, *on_ten)[3:]] == [["Mean of 2 on 10 m", "13.0"]]
+    assert len(shown(qtbot, *on_ten, short)) == 3
+
+
 def test_one_attempt_has_no_mean(qtbot: QtBot) -> None:
     assert len(shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False))) == 2
 
