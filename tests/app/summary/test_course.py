@@ -223,12 +223,13 @@ def test_a_test_that_was_broken_off_has_no_value_and_is_kept_as_it_is() -> None:
 
 def test_tests_on_two_courses_are_in_no_mean_and_no_change() -> None:
     def on(*lengths_m: float) -> CourseCondition:
-        walks = [timed(TimedProtocol.UP_AND_GO, time_s=10.0 + k, name=f"walk {k}") for k in range(len(lengths_m))]
-        tests = [
-            replace(one, timed=replace(one.timed, course_m=length_m))
-            for one, length_m in zip(walks, lengths_m, strict=True)
-        ]
-        return only(course(*((one, "shoes") for one in tests)))
+        tests = []
+        for k, length_m in enumerate(lengths_m):
+            walk = timed(TimedProtocol.UP_AND_GO, time_s=10.0 + k, name=f"walk {k}")
+            test = walk.timed
+            assert test is not None
+            tests.append((replace(walk, timed=replace(test, course_m=length_m)), "shoes"))
+        return only(course(*tests))
 
     three, mixed, five = on(3.0, 3.0), on(5.0, 3.0), on(5.0)
     found = [one.test("up_and_go_time_s") for one in (three, mixed, five)]
