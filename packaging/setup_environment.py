@@ -17,13 +17,14 @@ import platform
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NoReturn
 
 ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 STAMP = VENV / "made-from"
+RUNS = ("app", "core", "devices", "packaging", "resources", "LICENSE", "README.md", "pyproject.toml")
 UNFINISHED = "unfinished"
 RUNTIME, TESTED = "runtime.lock", "requirements.lock"  # the second holds the first, and what the tests need
 
@@ -69,6 +70,53 @@ def prepare(*, is_screen_needed: bool, lock: str = RUNTIME) -> Path:
     except KeyboardInterrupt:
         raise SetUpError("Stopped before everything was ready. Start again to go on.") from None
     return python()
+
+
+def copied_to_user() -> Path | None:
+    """Copy what runs to a folder of the user's, where `ROOT` is read-only, and give it; None where it is not.
+
+    What was changed or removed since the last start is so in the copy too; its environment stays.
+    """
+    if os.access(ROOT, os.W_OK):
+        return None
+    place = _user_folder() / "gaitwright-copies" / hashlib.sha256(str(ROOT).encode()).hexdigest()[:16]
+    try:
+        kept = set()
+        for source in _sources():
+            name = source.relative_to(ROOT)
+            kept.add(place / name)
+            if not _is_same(source, place / name):
+                (place / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(source, place / name)
+                shutil.copystat(source, place / name)
+        for folder in RUNS:
+            for old in [one for one in (place / folder).rglob("*") if one.is_file() and one not in kept]:
+                old.unlink()
+    except OSError as error:
+        raise SetUpError(f"{ROOT} is read-only, and {place} cannot be written: {error.strerror}.") from error
+    return place
+
+
+def _sources() -> Iterator[Path]:
+    for name in RUNS:
+        found = [ROOT / name] if (ROOT / name).is_file() else sorted((ROOT / name).rglob("*"))
+        yield from (one for one in found if one.is_file() and "__pycache__" not in one.parts)
+
+
+def _is_same(source: Path, copy: Path) -> bool:
+    try:
+        there, here = source.stat(), copy.stat()
+    except OSError:
+        return False
+    return (there.st_size, there.st_mtime_ns) == (here.st_size, here.st_mtime_ns)
+
+
+def _user_folder() -> Path:
+    if os.name == "nt":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Application Support"
+    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share")
 
 
 def python() -> Path:

@@ -8,7 +8,7 @@ import os
 import sys
 from pathlib import Path
 
-from setup_environment import SetUpError, hand_over, prepare, say
+from setup_environment import SetUpError, copied_to_user, hand_over, prepare, say
 
 
 def has_screen() -> bool:
@@ -20,6 +20,8 @@ def has_screen() -> bool:
 def main(arguments: list[str]) -> None:
     is_window = not arguments and has_screen()
     try:
+        if (copy := copied_to_user()) is not None:
+            hand_over([sys.executable, str(copy / "packaging" / "start.py"), *arguments])
         python = prepare(is_screen_needed=is_window)
     except SetUpError as missing:
         sys.exit(str(missing))

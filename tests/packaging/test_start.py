@@ -202,3 +202,26 @@ def test_with_a_screen_the_window_opens(set_up: ModuleType, monkeypatch: pytest.
     monkeypatch.setattr(module, "hand_over", called.append)
     module.main([])
     assert called == [[str(set_up.python()), "-P", "-m", "app"]]
+
+
+def test_from_a_folder_that_may_not_be_written_a_copy_of_the_users_runs(
+    set_up: ModuleType, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert set_up.copied_to_user() is None
+    home = tmp_path_factory.mktemp("home")
+    monkeypatch.setenv("XDG_DATA_HOME", str(home))
+    monkeypatch.setattr(set_up.os, "access", lambda path, mode: (path, mode) != (set_up.ROOT, os.W_OK))
+    (set_up.ROOT / "app").mkdir()
+    for name in ("app/old.py", "app/new.py"):
+        (set_up.ROOT / name).write_text("1")
+    copy = set_up.copied_to_user()
+    (copy / ".venv").mkdir()
+    (set_up.ROOT / "app" / "old.py").unlink()
+    (set_up.ROOT / "app" / "new.py").write_text("22")
+    assert set_up.copied_to_user() == copy
+    assert copy.is_relative_to(home)
+    assert {one.relative_to(copy).as_posix() for one in copy.rglob("*") if one.is_file()} == {
+        *("app/new.py", "packaging/requirements.lock", "packaging/runtime.lock", "pyproject.toml")
+    }
+    assert (copy / "app" / "new.py").read_text() == "22"
+    assert (copy / ".venv").is_dir()
