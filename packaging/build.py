@@ -17,7 +17,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from linux_packages import make_archive, make_deb
+from linux_packages import make_archives, make_debs
 from setup_environment import PYTHON_VERSION, ROOT, say
 
 WORK = ROOT / "build"
@@ -49,7 +49,7 @@ def main(arguments: list[str]) -> None:
     tour = folder / "gaitwright-tour"
     if tour.exists():
         tour.replace(required.out / tour.name)  # never part of what is given away
-    for made in (make_archive(folder, VERSION, required.out), make_deb(folder, VERSION, required.out)):
+    for made in (*make_archives(folder, VERSION, required.out), *make_debs(folder, VERSION, required.out)):
         digest = hashlib.sha256(made.read_bytes()).hexdigest()
         (required.out / f"{made.name}.sha256").write_text(f"{digest}  {made.name}\n", encoding="ascii")
         say(f"{made}: {megabytes(made)} MB, SHA-256 {digest}")

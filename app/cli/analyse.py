@@ -10,6 +10,7 @@ from app.cli.progress import finding_lines
 from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
 from app.exports.local_csv import CsvForm, rewrite_tables
 from app.exports.result_folder import OWN_SESSION, check_place, written_beside
+from app.review.installed import has_rerun
 from app.system.progress import Report
 from app.wording.body import name_of
 from core.results import Analysis, Method
@@ -35,6 +36,13 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
         analysis = write_analysed(read_session(args, args.session, report), folder, choices_of(args), report)
         rewrite_tables(folder, form)
     yield from lines_of(analysis, args.out)
+    yield from lines_without_log(choices_of(args))
+
+
+def lines_without_log(choices: AnalysisChoices) -> Iterator[str]:
+    """Say that a log was wanted and cannot be written here."""
+    if choices.has_log and not has_rerun():
+        yield "session.rrd was not written: Rerun is not installed. Install rerun-sdk, or the package gaitwright-rerun."
 
 
 def choices_of(args: argparse.Namespace) -> AnalysisChoices:

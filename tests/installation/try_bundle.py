@@ -48,14 +48,19 @@ class TrialError(Exception):
 
 
 def try_package(root: BareRoot) -> None:
-    """Install the .deb, use it, remove it."""
-    (package,) = DIST.glob("gaitwright_*.deb")
+    """Install both packages, use them, remove them; the first alone lacks Rerun's log and nothing else."""
+    packages_made = sorted(DIST.glob("gaitwright*_*.deb"))
     root.apt("update")
     before, packages = root.files(), installed(root)
-    shutil.copy(package, root.folder / "root")
+    for package in packages_made:
+        shutil.copy(package, root.folder / "root")
     with reported("apt-get install"):
-        root.apt("install", f"/root/{package.name}")
+        root.apt("install", *(f"/root/{package.name}" for package in packages_made))
     use(root, "gaitwright", INSTALLED)
+    root.apt("purge", "--autoremove", "gaitwright-rerun")
+    answer = root.run("gaitwright", "demo", "--out", str(root.home / "without-rerun"))
+    if "session.rrd was not written" not in answer:
+        raise TrialError("Without Rerun the demonstration does not say what it lacks.")
     root.apt("purge", "--autoremove", "gaitwright")
     # what others recommend, apt keeps
     kept = sorted(installed(root) - packages)
@@ -69,12 +74,12 @@ def try_package(root: BareRoot) -> None:
 
 
 def try_archive(root: BareRoot) -> None:
-    """Unpack the archive in a home, with the libraries that its README names, use it, remove it."""
-    (archive,) = DIST.glob("gaitwright-*.tar.zst")
+    """Unpack both archives in a home, with the libraries that the README names, use them, remove them."""
     root.apt("update")
     home = root.outside(root.home)
     with reported("unpacking"):
-        subprocess.run(["tar", "--extract", "--zstd", "--file", archive, "--directory", home], check=True)
+        for archive in DIST.glob("gaitwright-*.tar.zst"):
+            subprocess.run(["tar", "--extract", "--zstd", "--file", archive, "--directory", home], check=True)
     (folder,) = home.glob("gaitwright-*")
     readme = (folder / "README.txt").read_text(encoding="utf-8")
     libraries = re.search(r"apt-get install (.+)", readme)
@@ -90,10 +95,11 @@ def try_archive(root: BareRoot) -> None:
 
 def try_alone(root: BareRoot) -> None:
     """Lead a session to Rerun's viewer and to the saved report where there is no network, and see whom it calls."""
-    (package,) = DIST.glob("gaitwright_*.deb")
     root.apt("update")
-    shutil.copy(package, root.folder / "root")
-    root.apt("install", f"/root/{package.name}")
+    made = sorted(DIST.glob("gaitwright*_*.deb"))
+    for package in made:
+        shutil.copy(package, root.folder / "root")
+    root.apt("install", *(f"/root/{package.name}" for package in made))
     with tempfile.TemporaryDirectory(prefix="gaitwright-alone-") as folder:
         trace = Path(folder) / "calls"
         subprocess.run(

@@ -4,6 +4,8 @@ import configparser
 import importlib
 import json
 import re
+import shutil
+import subprocess
 import sysconfig
 import tomllib
 from pathlib import Path
@@ -180,6 +182,46 @@ def test_the_package_puts_a_program_a_menu_entry_and_an_icon_and_nothing_else_ou
     }
     assert (tmp_path / "root/opt/gaitwright/_internal/library").read_text() == "library"
     assert str((tmp_path / "root/usr/bin/gaitwright").readlink()) == "/opt/gaitwright/gaitwright"
+
+
+def test_rerun_is_a_package_and_an_archive_of_its_own_for_the_same_place(packages: ModuleType, tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    for name in (
+        "gaitwright",
+        "_internal/library",
+        "_internal/rerun_bindings/rerun_bindings.abi3.so",
+        "_internal/rerun_cli/rerun",
+    ):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(name)
+    packages.lay_out(folder, tmp_path / "first")
+    packages.lay_out_rerun(folder, tmp_path / "second")
+    parts = [
+        {
+            one.relative_to(tmp_path / root / "opt/gaitwright").as_posix()
+            for one in (tmp_path / root).rglob("opt/gaitwright/**/*")
+            if one.is_file()
+        }
+        for root in ("first", "second")
+    ]
+    assert parts == [
+        {"gaitwright", "_internal/library"},
+        {"_internal/rerun_bindings/rerun_bindings.abi3.so", "_internal/rerun_cli/rerun"},
+    ]
+    first, second = (make("1.2.3", "amd64", tmp_path) for make in (packages.control, packages.control_of_rerun))
+    assert "Recommends: gaitwright-rerun (= 1.2.3)" in first
+    assert "Depends: gaitwright (= 1.2.3)\n" in second
+    if shutil.which("zstd"):
+        kept = [tarred(archive) for archive in packages.make_archives(folder, "1.2.3", tmp_path)]
+        assert kept[0] & kept[1] == set()
+        assert {name for names in kept for name in names} == {
+            f"gaitwright-1.2.3/{name}" for name in (*parts[0], *parts[1], "README.txt")
+        }
+
+
+def tarred(archive: Path) -> set[str]:
+    listed = subprocess.run(["tar", "--list", "--zstd", "--file", archive], capture_output=True, text=True, check=True)
+    return {name for name in listed.stdout.splitlines() if not name.endswith("/")}
 
 
 def test_the_menu_entry_starts_what_the_package_installs() -> None:
