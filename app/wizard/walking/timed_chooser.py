@@ -93,6 +93,7 @@ class CourseField(QWidget):
         self.field.edited.connect(self.entered)
         self.field.committed.connect(self.entered)
         LeavingKeys(self.field).left.connect(self.left)
+        self.hide()  # until a test is chosen
 
     @property
     def value(self) -> float | None:
