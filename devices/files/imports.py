@@ -95,6 +95,9 @@ def place_sensors(
     if is_one_receiver:
         placed = [(site, _on_one_receiver(sensor)) for site, sensor in placed]
     sensors = [sensor for _, sensor in placed]
+    for sensor in sensors:
+        for restart in sensor.restarts:
+            raise restart.refusal
     _refuse_apart(sensors)
     _refuse_jumps(sensors)
     start_s = min((sensor.block.time_s[0] for sensor in sensors if len(sensor.block)), default=0.0)
