@@ -235,7 +235,9 @@ def case(
         "read_foreign_session": lambda folder, _waiting: read_session(folder),
         "read_foreign_reference": lambda path, _waiting: read_reference(path),
         "write_over_session": write_session,
-        "read_foreign_trial": lambda name, files, rate_hz, _waiting, choices: read_trial(name, files, rate_hz, choices),
+        "read_foreign_trial": lambda name, files, rate_hz, _waiting, choices, splits: read_trial(
+            name, files, rate_hz, choices, splits=splits
+        ),
     }
     patched = set()
     for module in (agree, import_files, places):
