@@ -57,6 +57,7 @@ class DraftCards(QWidget):
         self._recordings: list[_RecordingRow] = []
         self._sensors: list[_SensorRow] = []
         self._chains: Chains | None = None
+        self._program = ""
         self._of_recordings, self._of_sensors = Card(padding=20, spacing=12), Card(padding=20, spacing=8)
         self._recordings_title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self._recording_rows = QVBoxLayout()
@@ -152,9 +153,7 @@ class DraftCards(QWidget):
             shown.remove()
         for sensor in self._sensors:
             sensor.remove()
-        count = len(draft.recordings)
-        title = tr_n("{count} recording of {program}", "{count} recordings of {program}", count)
-        self._recordings_title.setText(title.format(count=count, program=program))
+        self._program = program
         self._show_recordings(draft)
         longest = max(draft.recordings, key=lambda one: max((len(s.block) for s in one.trial.sensors), default=0))
         self._sensors = [_SensorRow(self._sensor_rows, one, longest) for one in draft.sensors]
@@ -193,6 +192,9 @@ class DraftCards(QWidget):
         self._on_changed()
 
     def _show_recordings(self, draft: SessionDraft) -> None:
+        count = len(draft.recordings)
+        title = tr_n("{count} recording of {program}", "{count} recordings of {program}", count)
+        self._recordings_title.setText(title.format(count=count, program=self._program))
         self._recordings = []
         for number, one in enumerate(draft.recordings):
             row = _RecordingRow(self._recording_rows, one)
@@ -296,7 +298,7 @@ class _RecordingRow:
         grid.addWidget(Text(breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
         grid.addWidget(curve, 0, 1)
         grid.addWidget(self.kind, 0, 2, Qt.AlignmentFlag.AlignRight)
-        stated = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
+        stated = f"{facts(recording.trial, recording.clocks)} · {kind_origin_words(recording.origin)}"
         grid.addWidget(Text(stated, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
         for unread in recording.trial.unread:
             grid.addWidget(
