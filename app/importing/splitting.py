@@ -103,11 +103,7 @@ def _split(
 
 
 def _breaks(sensor: ImportedSensor) -> list[ClockBreak]:
-    return [
-        ClockBreak(ClockEventKind.RESTART, one.at, one.shift_s, -one.shift_s)
-        for one in sensor.restarts
-        if 0 < one.at < len(sensor.block)
-    ]
+    return [ClockBreak(ClockEventKind.RESTART, one.at, one.shift_s, -one.shift_s) for one in sensor.restarts]
 
 
 def _in_pause(times_s: list[FloatArray], at_s: float) -> float:

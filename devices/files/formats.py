@@ -81,7 +81,10 @@ def read_trial(
     """
     if splits:
         with restarts_continued() as met:
-            return _with_restarts(read_trial(name, files, rate_hz, choices), met)
+            try:
+                return _with_restarts(read_trial(name, files, rate_hz, choices), met)
+            except FileRefusedError as refusal:
+                raise (met[0] if met else refusal) from refusal  # what follows may be due to it
     for path in files:
         _refuse_missing(path)
     every, mappings = without_mappings(list({path.resolve(): path for path in files}.values()))
@@ -101,7 +104,7 @@ def read_trial(
 
 
 def _with_restarts(trial: ImportedTrial, met: Sequence[FileRefusedError]) -> ImportedTrial:
-    """The trial with its clocks' restarts in place of their findings; raises one that no sensor has."""
+    """The trial with its clocks' restarts in place of their findings; raises FileRefusedError for one that is lost."""
     sensors = tuple(map(_with_its_restarts, trial.sensors))
     stated = {str(one.refusal) for sensor in sensors for one in sensor.restarts}
     for refusal in met:

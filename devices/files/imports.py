@@ -179,7 +179,7 @@ def _refuse_restarts(sensors: Sequence[ImportedSensor]) -> None:
     for sensor in sensors:
         for restart in sensor.restarts:
             of, time_s = restart.refusal, sensor.block.time_s
-            at = _from_start(sensors, float(time_s[min(restart.at, len(time_s) - 1)]))
+            at = _from_start(sensors, float(time_s[restart.at]))
             raise FileRefusedError.stated_elsewhere(of.where, of.what, SPLIT_AT, {**of.values, "at": at})
 
 

@@ -85,6 +85,10 @@ class ImportedSensor:
     findings: tuple[Finding, ...] = ()
     restarts: tuple[ClockRestart, ...] = ()
 
+    def __post_init__(self) -> None:
+        if not all(0 < one.at < len(self.block) for one in self.restarts):
+            raise ValueError(f"a clock restarts outside of the {len(self.block)} samples of {self.name}")
+
 
 @dataclass(frozen=True, slots=True)
 class UnreadFile:

@@ -38,7 +38,8 @@ class ReceivedCard(Card):
         self.title = Text(tr("Samples were lost"), weight=MEDIUM, wraps=True)
         self.then = Text(
             tr(
-                "Strides with longer gaps are excluded. Repeat the recording while the patient is here if too few remain."
+                "Strides with longer gaps are excluded. Repeat the recording while the patient is here if too few "
+                "remain."
             ),
             tone="ink2",
             wraps=True,
