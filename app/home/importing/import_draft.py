@@ -311,6 +311,7 @@ class _RecordingRow:
             self.clock = ClockPart(recording.clocks, names)
             grid.addWidget(self.clock, grid.rowCount(), 0, 1, 3)
         column.addWidget(self._part)
+        self._part.show()  # at once, so that it can have the focus
 
     @property
     def split_buttons(self) -> list[QWidget]:
