@@ -70,7 +70,8 @@ def test_what_all_sensors_miss_is_a_pause_and_no_jump() -> None:
     view = view_of(block(TIME_S, paused), block(TIME_S, paused))
     (event,) = view.events
     assert (event.kind, event.sensors) == (ClockEventKind.PAUSE, (0, 1))
-    assert (event.at_s, event.length_s) == (pytest.approx(5.99), pytest.approx(5.02))
+    assert event.at_s == pytest.approx(5.99)
+    assert event.length_s == pytest.approx(5.02)
 
 
 def test_what_one_sensor_misses_is_a_loss_and_no_pause() -> None:
@@ -105,7 +106,9 @@ def test_every_second_sample_missing_shows_against_the_rate_that_was_set_alone()
     half = np.arange(len(TIME_S)) % 2 == 0
     (event,) = view_of(block(TIME_S, half), rate_hz=RATE_HZ).events
     assert event.kind is ClockEventKind.SPARSE
-    assert event.rates_hz == (pytest.approx(50.0, abs=0.1), RATE_HZ)
+    came_hz, set_hz = event.rates_hz
+    assert came_hz == pytest.approx(50.0, abs=0.1)
+    assert set_hz == RATE_HZ
     assert view_of(block(TIME_S, half)).events == ()
     assert view_of(block(TIME_S * 1.05), rate_hz=RATE_HZ).events == ()  # as clocks and settings are off
 

@@ -28,7 +28,8 @@ def test_a_restart_is_refused_unless_the_recording_will_be_split(tmp_path: Path)
     (sensor,) = read_trial("", [path], None, splits=True).sensors
     np.testing.assert_allclose(sensor.block.time_s, TIME_S, atol=1e-6)
     (restart,) = sensor.restarts
-    assert (restart.at, restart.shift_s) == (900, pytest.approx(8.5))
+    assert restart.at == 900
+    assert restart.shift_s == pytest.approx(8.5)
     assert sensor.findings == read_trial("", [table(tmp_path, "right_thigh")], None).sensors[0].findings
     with pytest.raises(FileRefusedError, match=REFUSED):
         read_trial("", [path], None)  # nothing is left switched on
