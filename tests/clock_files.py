@@ -11,6 +11,10 @@ TIME_S: FloatArray = np.arange(0.0, LENGTH_S, 1.0 / RATE_HZ)
 ALL: BoolArray = np.ones(len(TIME_S), dtype=bool)
 
 
+SensorTable = tuple[FloatArray, BoolArray]
+"""Times (n,), and which of them are left."""
+
+
 def restarted(at_s: float, at: float = 0.5) -> FloatArray:
     """Times that begin again with `at` from `at_s` on."""
     return np.where(at_s - 1e-9 <= TIME_S, TIME_S - at_s + at, TIME_S)
@@ -41,8 +45,8 @@ def table(folder: Path, name: str, time_s: FloatArray = TIME_S, is_there: BoolAr
 
 def pair(
     folder: Path,
-    thigh: tuple[FloatArray, BoolArray] = (TIME_S, ALL),
-    shank: tuple[FloatArray, BoolArray] = (TIME_S, ALL),
+    thigh: SensorTable = (TIME_S, ALL),
+    shank: SensorTable = (TIME_S, ALL),
 ) -> list[Path]:
     """A left thigh and a left shank."""
     return [table(folder, "left_thigh", *thigh), table(folder, "left_shank", *shank, phase=0.3)]

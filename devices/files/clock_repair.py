@@ -127,7 +127,7 @@ def repaired(
 
 @dataclass(frozen=True, slots=True)
 class _Restart:
-    """A clock that began again at stamp `at`, those after it moved by `shift`; `refusal`: what is said without."""
+    """A clock that began again at stamp `at`, those after it moved by `shift`; `refusal`: of a recording that is not split there."""
 
     at: int
     shift: float
@@ -178,7 +178,7 @@ def _restart_finding(restart: _Restart, is_new: BoolArray, times: FloatArray, un
 
 
 def restart_refusal(finding: Finding) -> FileRefusedError:
-    """What is said of a clock that was continued, where its recording is not split there."""
+    """The refusal of a clock that was continued, where its recording is not split there."""
     of = finding.numbers
     return _steps_back(str(of["where"]), str(of["name"]), str(of["before"]), str(of["after"]))
 

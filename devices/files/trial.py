@@ -60,8 +60,8 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
 class ClockRestart:
     """A clock that began again: its times go on one step after it left off, and nobody knows how long it was.
 
-    `at`: how many samples are before it. `shift_s`: what was added to the times after it. `refusal`: what is said where
-    the recording is not split there.
+    `at`: how many samples are before it. `shift_s`: what was added to the times after it. `refusal`: of a
+    recording that is not split there.
     """
 
     at: int

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 LEAST_EXPECTED = 100  # samples: below, one lost packet would be much
 
 
-class Received:
+class ReceivedCounts:
     """Counts each recording once."""
 
     def __init__(self) -> None:

@@ -20,7 +20,7 @@ from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
-from app.wizard.walking.received import Received
+from app.wizard.walking.received import ReceivedCounts
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_labels import label_after, labels_for, stored_label
 from app.wizard.walking.walk_notice import WalkNotice, asked_walk
@@ -55,7 +55,7 @@ class WalkingStep(Step):
         self._ticks = 0
         self._were_sensors = (False, False, True)  # as `_are_sensors` was when it was looked at last
         self._notice = WalkNotice(visit)
-        self._received = Received()
+        self._received = ReceivedCounts()
         self._discarded: UUID | None = None
         self._kept: UUID | None = None  # at the bench, and can be taken back
         self._must_restrap = False

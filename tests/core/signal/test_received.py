@@ -40,7 +40,8 @@ def test_a_clock_that_is_a_little_off_loses_nothing() -> None:
 
 def test_a_gap_is_counted_and_measured() -> None:
     counts = samples_received(recording(left_foot=without((6.0, 8.999)), left_shank=ALL), RATES)
-    assert counts[Site.LEFT_FOOT] == SamplesReceived(2000, 1700, pytest.approx(3.01))  # type: ignore[arg-type]
+    assert (counts[Site.LEFT_FOOT].expected, counts[Site.LEFT_FOOT].received) == (2000, 1700)
+    assert counts[Site.LEFT_FOOT].longest_gap_s == pytest.approx(3.01)
     assert counts[Site.LEFT_FOOT].is_lossy
     assert counts[Site.LEFT_FOOT].lost_percent == pytest.approx(15.0)
     assert counts[Site.LEFT_SHANK] == ALL_CAME
@@ -71,7 +72,8 @@ def test_packets_that_end_at_other_times_are_no_loss() -> None:
 
 def test_a_sensor_that_sent_nothing_is_stated() -> None:
     counts = samples_received(recording(left_shank=ALL), RATES, worn=[Site.LEFT_FOOT, Site.LEFT_SHANK])
-    assert counts[Site.LEFT_FOOT] == SamplesReceived(2000, 0, pytest.approx(19.99))  # type: ignore[arg-type]
+    assert (counts[Site.LEFT_FOOT].expected, counts[Site.LEFT_FOOT].received) == (2000, 0)
+    assert counts[Site.LEFT_FOOT].longest_gap_s == pytest.approx(19.99)
     assert samples_received(recording(left_shank=ALL), RATES) == {Site.LEFT_SHANK: ALL_CAME}
 
 

@@ -14,7 +14,7 @@ from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
 from tests.app.home.home_library import WAIT_MS
 from tests.app.home.importing.test_importing import choices, read, shown
-from tests.clock_files import ALL, TIME_S, jumped, pair, restarted, without
+from tests.clock_files import ALL, TIME_S, SensorTable, jumped, pair, restarted, without
 
 RESTARTED = restarted(9.0), ALL
 PAUSED = TIME_S, without((6.0, 11.0))
@@ -52,12 +52,12 @@ def test_each_event_is_stated_and_some_are_places_to_split(
     qtbot: QtBot,
     home: Home,
     tmp_path: Path,
-    thigh: tuple[object, object],
-    shank: tuple[object, object],
+    thigh: SensorTable,
+    shank: SensorTable,
     stated: str,
     can_be_split: bool,
 ) -> None:
-    page = read(qtbot, home, *pair(tmp_path, thigh, shank))  # type: ignore[arg-type]  # parametrised
+    page = read(qtbot, home, *pair(tmp_path, thigh, shank))
     words = shown(page).replace("\N{ZERO WIDTH SPACE}", "")
     assert stated in words
     assert words.count("Sensor clocks") == 1
