@@ -127,7 +127,7 @@ def repaired(
 
 @dataclass(frozen=True, slots=True)
 class _Restart:
-    """A clock that began again at stamp `at`, those after it moved by `shift`; `refusal`: of a recording that is not split there."""
+    """A clock that began again at stamp `at`, those after it moved by `shift`; `refusal`: where it is not split."""
 
     at: int
     shift: float

@@ -4,47 +4,32 @@ from typing import TYPE_CHECKING
 
 from app.wizard.walking.received_card import ReceivedRow
 from core.body import Site
-from core.signal.received import SamplesReceived, samples_received
+from core.signal.received import SamplesReceived
 
 if TYPE_CHECKING:
-    from uuid import UUID
-
     from app.editing.session_recording import SessionRecording
     from app.wizard.recordings import SessionRecordings
     from app.wizard.visit import Visit
-    from core.session import Recording
 
 LEAST_EXPECTED = 100  # samples: below, one lost packet would be much
 
 
-class ReceivedCounts:
-    """Counts each recording once."""
+def received_of(recording: "SessionRecording") -> dict[Site, SamplesReceived]:
+    """By the sites that the sensors are stated to have been worn at."""
+    placement = recording.stored.placement
+    name_at = {site: one.name for site, one in placement.sensors.items()} if placement is not None else {}
+    return {site: recording.received[name_at[site]] for site in Site if name_at.get(site) in recording.received}
 
-    def __init__(self) -> None:
-        self._counted: dict[UUID, tuple[Recording, dict[Site, SamplesReceived]]] = {}
 
-    def of(self, recording: "SessionRecording") -> dict[Site, SamplesReceived]:
-        """By site; empty as long as it has not been read back."""
-        if recording.read_back is None:
-            return {}
-        known = self._counted.get(recording.id)
-        if known is None or known[0] is not recording.read_back:
-            placement = recording.stored.placement
-            sensors = placement.sensors if placement is not None else {}
-            rates_hz = {site: one.info.rate_hz for site, one in sensors.items()}
-            known = recording.read_back, samples_received(recording.read_back, rates_hz, sensors)
-            self._counted[recording.id] = known
-        return known[1]
-
-    def rows(self, recordings: "SessionRecordings") -> list[ReceivedRow]:
-        """Sensors that lost samples in recordings that count, or may."""
-        return [
-            ReceivedRow(recordings.called(recording.details.name), site, counts)
-            for recording in recordings.every
-            if recording.details.is_kept
-            for site, counts in self.of(recording).items()
-            if counts.is_lossy
-        ]
+def received_rows(recordings: "SessionRecordings") -> list[ReceivedRow]:
+    """Sensors that lost samples in recordings that count, or may."""
+    return [
+        ReceivedRow(recordings.called(recording.details.name), site, counts)
+        for recording in recordings.every
+        if recording.details.is_kept
+        for site, counts in received_of(recording).items()
+        if counts.is_lossy
+    ]
 
 
 def received_so_far(visit: "Visit") -> dict[Site, SamplesReceived]:

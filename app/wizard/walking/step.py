@@ -20,7 +20,7 @@ from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
-from app.wizard.walking.received import ReceivedCounts
+from app.wizard.walking.received import received_of, received_rows
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_labels import label_after, labels_for, stored_label
 from app.wizard.walking.walk_notice import WalkNotice, asked_walk
@@ -55,7 +55,6 @@ class WalkingStep(Step):
         self._ticks = 0
         self._were_sensors = (False, False, True)  # as `_are_sensors` was when it was looked at last
         self._notice = WalkNotice(visit)
-        self._received = ReceivedCounts()
         self._discarded: UUID | None = None
         self._kept: UUID | None = None  # at the bench, and can be taken back
         self._must_restrap = False
@@ -398,9 +397,9 @@ class WalkingStep(Step):
             cadence = self._at_stop.cadence_steps_min
         facts = ""
         if asked is not None:
-            clauses = [facts_of(self._visit, asked, cadence), received_clause(self._received.of(asked))]
+            clauses = [facts_of(self._visit, asked, cadence), received_clause(received_of(asked))]
             facts = " · ".join(filter(None, clauses))
-        self._page.show_received(self._received.rows(self._visit.recordings) if ongoing is None else ())
+        self._page.show_received(received_rows(self._visit.recordings) if ongoing is None else ())
         self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self.bench.state() if self.bench.is_shown and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), name_in_words(self._label))
