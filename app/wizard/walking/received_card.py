@@ -15,6 +15,7 @@ from app.wording.body import name_of
 from app.wording.translation import capitalised, figure_text, tr
 from core.body import Site
 from core.signal.received import SamplesReceived
+from core.signal.tracks import MAX_REPORTED_GAP_S
 
 MOST_ROWS = 6  # the worst of them: the page has walks to show as well
 
@@ -70,7 +71,8 @@ def _head(words: str) -> TextCell:
 
 def _row(row: ReceivedRow) -> TableRow:
     counts = row.counts
-    gap = tr("{length} s").format(length=figure_text(counts.longest_gap_s, ".2f")) if counts.longest_gap_s else ""
+    gap = tr("{length} s") if counts.longest_gap_s else tr("under {length} s")
+    gap = gap.format(length=figure_text(counts.longest_gap_s or MAX_REPORTED_GAP_S, ".2f"))
     figures = (
         str(counts.expected),
         str(counts.received),

@@ -49,6 +49,9 @@ def test_the_table_has_expected_received_and_the_longest_gap(qtbot: QtBot) -> No
     card.show_rows([ReceivedRow("A barefoot", Site.RIGHT_FOOT, LOSSY)])
     (row,) = card.table.cells.rows
     assert [cell.words for cell in row.cells] == ["A barefoot", "R foot", "1811", "1511", "16.6 %", "3.01 s"]
+    card.show_rows([ReceivedRow("A barefoot", Site.RIGHT_FOOT, SamplesReceived(1000, 900, 0.0))])
+    assert card.table.cells.rows[0].cells[-1].words == "under 0.05 s"
+    card.show_rows([ReceivedRow("A barefoot", Site.RIGHT_FOOT, LOSSY)])
     assert "R foot 1811 1511 16.6 % 3.01 s" in card.accessibleName()
 
 
