@@ -212,7 +212,7 @@ def add_recording(
     findings: Sequence[Finding] = (),
     is_simulated: bool = False,
 ) -> Session:
-    """Add the latest recording (simulated: whole session); first details stay, rates while all agree.
+    """Add the latest recording (simulated: whole session); first details stay, rates and clocks while all agree.
     Raises FileRefusedError: same name or folder, or somebody was measured in it and not in this one.
     """
     if is_simulated and session.recordings and not session.is_simulated:
@@ -273,4 +273,5 @@ def _agreed(first: SensorInfo, later: SensorInfo) -> SensorInfo:
         first,
         rate_hz=first.rate_hz if first.rate_hz == later.rate_hz else None,
         rate_kind=first.rate_kind if first.rate_kind == later.rate_kind else None,
+        clock=first.clock if later.clock in ("", first.clock) else "",
     )

@@ -9,14 +9,15 @@ import pytest
 from app.importing.import_drafts import drafts_of, session_of, split_draft
 from app.importing.splitting import clock_view_of, split_all, split_trial
 from core.body import Site
-from core.session import RecordingKind
+from core.session import Recording, RecordingKind, Session
 from devices.files.formats import read_trial
-from devices.files.imports import place_trial
+from devices.files.imports import add_recording, place_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
 from tests.clock_files import ALL, TIME_S, jumped, pair, restarted, without
 
 PLACED = {Site.LEFT_THIGH: "left_thigh", Site.LEFT_SHANK: "left_shank"}
+WALKING = RecordingKind.WALKING
 PAUSED = TIME_S, without((6.0, 11.0))
 
 
@@ -50,6 +51,17 @@ def test_a_restart_of_one_clock_leaves_the_sensors_without_a_common_one(tmp_path
     assert clocks(first) == clocks(second) == {"left_shank", "left_thigh"}
     assert "split_clocks" in keys(second)
     assert "split_clocks" not in keys(first)
+
+
+def test_a_session_states_no_common_clock_once_one_of_its_recordings_has_none(tmp_path: Path) -> None:
+    (tmp_path / "whole").mkdir()
+    whole = place_trial(read(pair(tmp_path / "whole")), PLACED, "walk 1", is_one_receiver=True)
+    session = add_recording(Session(()), Recording("walk 1", WALKING, "walk_1", whole.imu), whole.sensors)
+    assert len({info.clock for info in session.sensors.values()}) == 1
+    _, second = split_trial(read(pair(tmp_path, (restarted(9.0), ALL))), 9.0)
+    broken = place_trial(second, PLACED, "walk 2")
+    session = add_recording(session, Recording("walk 2", WALKING, "walk_2", broken.imu), broken.sensors)
+    assert {info.clock for info in session.sensors.values()} == {""}
 
 
 def test_a_jump_is_closed_and_its_recording_can_be_placed(tmp_path: Path) -> None:
