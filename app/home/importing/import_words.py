@@ -13,6 +13,7 @@ from core.body import Site
 from core.samples import FloatArray, ImuBlock
 from core.session import RecordingKind
 from core.signal.clock_events import ClockEventKind, ClockView
+from core.signal.clock_jumps import LONGER_THAN_LOSS_S
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from devices.files.trial import PROGRAMS
 
@@ -91,7 +92,9 @@ def liveliness(blocks: Sequence[ImuBlock]) -> tuple[FloatArray, FloatArray]:
     block = next((block for block in blocks if len(block)), None)
     if block is None:
         return np.empty(0), np.empty(0)
-    return thin(block.time_s, np.linalg.norm(block.gyr_rad_s, axis=1), FEWEST_COLUMNS)
+    steps_s = np.diff(block.time_s, prepend=block.time_s[:1])
+    steps_s[steps_s > LONGER_THAN_LOSS_S] = 0.0  # else a clock that jumped would leave the curve no room
+    return thin(np.cumsum(steps_s), np.linalg.norm(block.gyr_rad_s, axis=1), FEWEST_COLUMNS)
 
 
 def _rates(trial: "ImportedTrial") -> str:

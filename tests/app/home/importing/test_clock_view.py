@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -10,8 +11,10 @@ from pytestqt.qtbot import QtBot
 from app.home.home import Home
 from app.home.importing.clock_part import ClockPart
 from app.home.importing.import_page import ImportPage
+from app.home.importing.import_words import liveliness
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
+from devices.files.formats import read_trial
 from tests.app.home.home_library import WAIT_MS
 from tests.app.home.importing.test_importing import choices, read, shown
 from tests.clock_files import ALL, TIME_S, SensorTable, jumped, pair, restarted, without
@@ -124,3 +127,11 @@ def test_splitting_goes_by_keys(qtbot: QtBot, home: Home, tmp_path: Path) -> Non
     button.setFocus()
     QTest.keyClick(button, Qt.Key.Key_Space)
     qtbot.waitUntil(lambda: len(page.draft.kinds) == 2, timeout=WAIT_MS)
+
+
+def test_the_small_curve_of_a_clock_that_jumped_has_room(tmp_path: Path) -> None:
+    files = pair(tmp_path, shank=(jumped(9.0, 3600.0), ALL))
+    whole, jump = (sensor.block for sensor in read_trial("", files, None, splits=True).sensors)
+    for block in (whole, jump):
+        time_s, _ = liveliness([block])
+        assert float(np.ptp(time_s)) == pytest.approx(20.0, abs=0.2)
