@@ -150,8 +150,13 @@ class ReadingBack(QObject):
 def _read_and_counted(
     recorder: Recorder, opened: "OpenedLibrary"
 ) -> tuple[StoredRecording, Recording, dict[str, SamplesReceived]]:
-    """What a journal holds, and by sensor how much was received of what was expected."""
+    """What a journal holds, and by sensor how much was received of what was expected.
+
+    Sensors that record in their memories begin and end one after the other; `SessionRecording.lacks` is theirs.
+    """
     stored, recording = recorder.stop(opened)
+    if recorder.memory is not None:
+        return stored, recording, {}
     placed = stored.placement.sensors if stored.placement is not None else {}
     rates_hz = {site: one.info.rate_hz for site, one in placed.items()}
     counts = samples_received(recording, rates_hz, placed)

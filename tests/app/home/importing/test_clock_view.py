@@ -124,7 +124,10 @@ def test_splitting_goes_by_keys(qtbot: QtBot, home: Home, tmp_path: Path) -> Non
     (button,) = splits(page)
     assert button in page.tab_order
     assert "No sensor recorded for 5.0 s" in button.accessibleDescription()
-    button.setFocus()
+    (kind,) = (one for name, one in choices(page).items() if name.startswith("Type of"))
+    kind.setFocus()
+    QTest.keyClick(kind, Qt.Key.Key_Tab)
+    assert button.hasFocus()
     QTest.keyClick(button, Qt.Key.Key_Space)
     qtbot.waitUntil(lambda: len(page.draft.kinds) == 2, timeout=WAIT_MS)
 
