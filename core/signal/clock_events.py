@@ -17,6 +17,8 @@ from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_recei
 TOGETHER_S = 0.5  # sensors that are restarted by one command do so within less
 SPARSE_PERCENT = 90.0  # of the rate that was set: below it, the verdicts report no angle (`rate` of TRUTH)
 MOST_JUMPS = 20  # of one clock: what jumps more often is no clock
+MOST_SPANS = 200  # of one sensor, between gaps over a second: looking for jumps takes their square
+MOST_PAUSES = 50  # what pauses more often loses samples: nobody splits a recording so often
 MOST_PARTS = 200  # of losses, that are drawn apart
 
 
@@ -79,6 +81,8 @@ class ClockView:
 def closed_jumps(times_s: Sequence[FloatArray]) -> list[tuple[FloatArray, tuple[ClockBreak, ...]]]:
     """Give each sensor's times (n,) without the jumps that the other sensors show, and these jumps."""
     spans = [spans_of(time_s) for time_s in times_s]
+    if max(map(len, spans), default=0) > MOST_SPANS:
+        return [(time_s, ()) for time_s in times_s]
     closed = []
     for number, time_s in enumerate(times_s):
         others, breaks = [*spans[:number], *spans[number + 1 :]], list[ClockBreak]()
@@ -110,6 +114,7 @@ def clock_view(
         for one in (*jumps, *restarts[number])
     ]
     pauses = pauses_among(received)
+    pauses = pauses if len(pauses) <= MOST_PAUSES else []
     every = tuple(range(len(blocks)))
     events = [
         *_together(breaks),

@@ -84,9 +84,19 @@ def pauses_among(received: Sequence[FloatArray]) -> list[Pause]:
         if len(received_s) < MIN_STRETCH_SAMPLES:
             continue
         gaps = [(float(a), float(b)) for a, b in gaps_of(received_s) if b - a >= LEAST_PAUSE_S]
-        both = gaps if common is None else [(max(a, c), min(b, d)) for a, b in common for c, d in gaps]
+        both = gaps if common is None else _common(common, gaps)
         common = [(a, b) for a, b in both if b - a >= LEAST_PAUSE_S]
     return common or []
+
+
+def _common(some: Sequence[Pause], others: Sequence[Pause]) -> list[Pause]:
+    """Give what two ascending rows of gaps have in common, in the time that their lengths take together."""
+    found, at, other = [], 0, 0
+    while at < len(some) and other < len(others):
+        (a, b), (c, d) = some[at], others[other]
+        found.append((max(a, c), min(b, d)))
+        at, other = (at + 1, other) if b < d else (at, other + 1)
+    return found
 
 
 def outside_of(pauses: Sequence[Pause], gaps_s: FloatArray) -> FloatArray:

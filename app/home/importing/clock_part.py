@@ -17,6 +17,7 @@ from app.wording.translation import figure_text, tr
 from core.signal.clock_events import SPLITTABLE, ClockEvent, ClockEventKind, ClockView
 
 LANE, BAR, MARK = 18, 6, 3
+MOST_EVENTS = 30  # in words; the others are stated once these are split
 MOST_LANES = 7  # of a leg set with the pelvis; the events of others are in words
 
 
@@ -29,8 +30,9 @@ class ClockPart(QWidget):
         super().__init__()
         self.buttons: list[Button] = []
         rows = lay_out(QVBoxLayout(), spacing=4)
-        sentences = [clock_sentence(event, names) for event in view.events]
-        for event, stated in zip(view.events, sentences, strict=True):
+        events = view.events[:MOST_EVENTS]
+        sentences = [clock_sentence(event, names) for event in events]
+        for event, stated in zip(events, sentences, strict=True):
             rows.addLayout(self._row(event, stated))
         title = Text(tr("Sensor clocks"), size=12, weight=MEDIUM, tone="ink2")
         lay_out(

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from core.samples import FloatArray, ImuBlock
 from core.signal.clock_events import MOST_PARTS, ClockBreak, ClockEventKind, ClockView, clock_view
+from core.signal.reception import pauses_among
 from devices.files.formats import read_trial
 from devices.files.gathering import gather
 from devices.files.refusal import FileRefusedError
@@ -100,6 +101,34 @@ def test_many_losses_are_one_event_and_few_parts() -> None:
     ).events
     assert event.count > 1000
     assert len(event.parts_s) <= MOST_PARTS
+
+
+def test_what_pauses_all_the_time_loses_samples() -> None:
+    """As quickly as anything else: two hundred thousand gaps of two sensors, each longer than a pause."""
+    steps_s = np.where(np.arange(600_000) % 3 == 2, 3.0, 0.1)
+    time_s = np.cumsum(steps_s)
+    rate = np.sin(time_s)[:, None] * np.ones(3)
+    blocks = [ImuBlock(name, time_s, rate, np.full((len(time_s), 3), 5.0)) for name in ("a", "b")]
+    view = clock_view(blocks, [(), ()], [None, None])
+    assert [(str(one.kind), one.count) for one in view.events] == [("loss", 200_000)] * 2
+
+
+@given(
+    st.lists(st.lists(st.tuples(st.integers(0, 60), st.integers(1, 20)), max_size=6), min_size=1, max_size=3),
+)
+def test_pauses_are_where_all_sensors_miss_samples(gaps: list[list[tuple[int, int]]]) -> None:
+    """Held against each instant of a grid."""
+    grid = np.arange(0.0, 100.0, 0.1)
+    masks = [np.ones(len(grid), dtype=bool) for _ in gaps]
+    for mask, own in zip(masks, gaps, strict=True):
+        for begin_s, length_s in own:
+            mask[(grid > begin_s + 0.05) & (grid < begin_s + length_s + 0.05)] = False
+        mask[[0, -1]] = True
+    missing = ~np.any(masks, axis=0)
+    edges = np.flatnonzero(np.diff(missing.astype(int), prepend=0, append=0))
+    expected = [(b - a + 1) / 10 for a, b in edges.reshape(-1, 2).tolist() if (b - a + 1) / 10 >= 2.0]
+    found = pauses_among([grid[mask] for mask in masks])
+    assert [b - a for a, b in found] == pytest.approx(expected)
 
 
 def test_every_second_sample_missing_shows_against_the_rate_that_was_set_alone() -> None:
