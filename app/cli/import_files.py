@@ -1,4 +1,4 @@
-"""`gaitwright import`: a recording of another program, added to a session folder, or a preview of its tables."""
+"""`gaitwright import`: recordings of another program, added to a session folder, or a preview of its tables."""
 
 import argparse
 import csv
@@ -10,6 +10,7 @@ from shlex import quote
 
 from app.cli.arguments import DECIMALS, SEPARATORS
 from app.cli.progress import finding_lines
+from app.importing.splitting import clock_view_of, split_all
 from app.importing.untrusted_files import (
     preview_foreign_table,
     read_foreign_session,
@@ -18,6 +19,7 @@ from app.importing.untrusted_files import (
 )
 from app.system.progress import Report
 from app.system.tables import is_free
+from app.wording.clock_events import clock_sentence
 from core.body import LEG_SITES, Site
 from core.session import Recording, RecordingKind, Session
 from devices.files.imports import (
@@ -32,10 +34,11 @@ from devices.files.imports import (
 )
 from devices.files.refusal import FileRefusedError, one_line
 from devices.files.table_choices import ALL_TABLES, NONE, NOTHING_STATED, TableChoices
+from devices.files.trial import ImportedTrial
 
 
 def run(args: argparse.Namespace, progress: Report) -> list[str]:
-    """Add the recording and give the lines for the terminal.
+    """Add the recording, or those it is split into, and give the lines for the terminal.
 
     Raises
     ------
@@ -58,15 +61,27 @@ def run(args: argparse.Namespace, progress: Report) -> list[str]:
     name = args.recording or free_name(session, kind)
     progress(0.0, name)
     choices = {ALL_TABLES: stated} if stated.are_any else NOTHING_STATED
-    trial = read_foreign_trial(args.format or "", files, args.rate, lambda: progress(0.0, name), choices)
-    imported = place_trial(trial, placement or mapped_sites(trial), name, is_one_receiver=args.one_receiver)
-    recording = Recording(name, kind, folder_for(name), imported.imu)
-    session = add_recording(session, recording, imported.sensors, imported.findings, imported.is_simulated)
+    trial = read_foreign_trial(args.format or "", files, args.rate, lambda: progress(0.0, name), choices, splits=True)
+    placement = placement or mapped_sites(trial)
+    lines = []
+    for number, part in enumerate(split_all(trial, args.split_at or []), start=1):
+        called = name if number == 1 else f"{args.recording} {number}" if args.recording else free_name(session, kind)
+        imported = place_trial(part, placement, called, is_one_receiver=args.one_receiver)
+        recording = Recording(called, kind, folder_for(called), imported.imu)
+        session = add_recording(session, recording, imported.sensors, imported.findings, imported.is_simulated)
+        sites = len(Site) if Site.PELVIS in imported.imu else len(LEG_SITES)
+        lines.append(f"{args.out} now holds {called}, with {len(imported.imu)} of {sites} sites.")
+        lines += [*_of_clocks(part), *finding_lines(imported.findings, lowest="info")]
     progress(0.5, str(args.out))
     write_over_session(session, args.out)
-    sites = len(Site) if Site.PELVIS in imported.imu else len(LEG_SITES)
-    held = f"{args.out} now holds {name}, with {len(imported.imu)} of {sites} sites."
-    return [held, *finding_lines(imported.findings, lowest="info")]
+    return lines
+
+
+def _of_clocks(trial: ImportedTrial) -> Iterator[str]:
+    """What befell its clocks, in words."""
+    names = [sensor.name for sensor in trial.sensors]
+    for event in clock_view_of(trial).events:
+        yield f"- {one_line(clock_sentence(event, names))}"
 
 
 def _stated(args: argparse.Namespace) -> TableChoices:

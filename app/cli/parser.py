@@ -245,6 +245,14 @@ def _add_import(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the sensors shared one receiver, which gave all their times, though the files do not state it",
     )
+    parser.add_argument(
+        "--split-at",
+        type=positive,
+        action="append",
+        metavar="SECONDS",
+        help="make two recordings: split so long after the first sample, or where a clock restarts or jumps, or all "
+        "sensors pause, within half a second of it; may be given several times",
+    )
     parser.add_argument("--kind", type=one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
     parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')
     parser.add_argument("--rate", type=positive, metavar="HZ", help="samples per second, if not in the files")

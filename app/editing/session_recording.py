@@ -1,7 +1,7 @@
 """One recording of a visit at present: the one that goes on, those that have ended, and which of them count."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 from uuid import UUID
 
@@ -11,6 +11,7 @@ from core.session import Recording
 
 if TYPE_CHECKING:
     from app.acquisition.memory_fetching import Lack
+    from core.signal.received import SamplesReceived
     from core.timed.protocols import PlannedTest
 
 
@@ -27,7 +28,7 @@ class SessionRecording:
     """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
 
     `strides` are those counted live. `is_decided`: somebody has stated whether it is kept; until then it is. `lacks`:
-    what could not be fetched from the sensors' memories.
+    what could not be fetched from the sensors' memories. `received`: by sensor, of a recording of this visit alone.
     """
 
     stored: StoredRecording
@@ -35,6 +36,7 @@ class SessionRecording:
     strides: Mapping[Side, int] | None = None
     is_decided: bool = True
     lacks: "tuple[Lack, ...]" = ()
+    received: "Mapping[str, SamplesReceived]" = field(default_factory=dict)
 
     @property
     def id(self) -> UUID:

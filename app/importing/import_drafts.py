@@ -12,10 +12,12 @@ from enum import StrEnum
 
 import numpy as np
 
+from app.importing.splitting import clock_view_of, split_trial
 from core.body import Site
 from core.placement.chains import USUAL_SITES, Chains, find_chains
 from core.samples import ImuBlock, RateKind
 from core.session import Recording, RecordingKind, Session
+from core.signal.clock_events import ClockView
 from core.signal.sensors import SensorTracks
 from devices.files.imports import add_recording, folder_for, free_name, place_sensors
 from devices.files.site_names import site_of_name
@@ -51,12 +53,13 @@ class DraftSensor:
 
 @dataclass(frozen=True, slots=True)
 class DraftRecording:
-    """`title`: what its files are called together."""
+    """`title`: what its files are called together. `clocks`: what befell those of its sensors."""
 
     title: str
     trial: ImportedTrial
     kind: RecordingKind
     origin: Origin
+    clocks: ClockView
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +125,16 @@ def session_of(
     return session
 
 
+def split_draft(draft: SessionDraft, number: int, at_s: float) -> SessionDraft:
+    """Give the draft with one of its recordings as two, split at a time of its `clocks`; raises FileRefusedError."""
+    one = draft.recordings[number]
+    parts = [
+        replace(one, title=f"{one.title} ({letter})", trial=part, clocks=clock_view_of(part))
+        for letter, part in zip("ab", split_trial(one.trial, at_s), strict=True)
+    ]
+    return replace(draft, recordings=(*draft.recordings[:number], *parts, *draft.recordings[number + 1 :]))
+
+
 def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
     """Give the legs found in the liveliest recording from the 2 to 7 `worn` sensor keys; None where none."""
     if len(worn) not in USUAL_SITES:
@@ -150,7 +163,9 @@ def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
 
 def _draft(trials: Sequence[tuple[str, ImportedTrial]]) -> SessionDraft:
     in_order = sorted(trials, key=lambda one: _when(one[1]))  # stable: those that give no time stay as they were
-    recordings = tuple(DraftRecording(title, trial, *_kind(title, trial)) for title, trial in in_order)
+    recordings = tuple(
+        DraftRecording(title, trial, *_kind(title, trial), clock_view_of(trial)) for title, trial in in_order
+    )
     names: dict[str, list[str]] = {}
     for _, trial in in_order:
         for sensor in trial.sensors:

@@ -36,9 +36,11 @@ def read_foreign_trial(
     rate_hz: float | None,
     waiting: Waiting,
     choices: StatedChoices = NOTHING_STATED,
+    *,
+    splits: bool = False,
 ) -> ImportedTrial:
-    """Read a trial by its reader in `devices.files`; `format_name` empty: by content; raises FileRefusedError."""
-    return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz, choices)
+    """Read a trial as `devices.files.formats.read_trial`, within limits; raises FileRefusedError."""
+    return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz, choices, splits=splits)
 
 
 def preview_foreign_table(path: Path, stated: TableChoices, waiting: Waiting) -> TablePreview:

@@ -18,6 +18,7 @@ from app.wizard.memory_fetches import MemoryFetches
 from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.session import Recording, RecordingKind
+from core.signal.received import SamplesReceived, samples_received
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
@@ -107,20 +108,22 @@ class ReadingBack(QObject):
         if self._reading is None and (stopped := self._next) is not None:
             self._reading = stopped
             self._readings += 1
-            self._controller.run(stopped.recorder.stop, self._on_read, self._on_not_read, self)
+            self._controller.run(partial(_read_and_counted, stopped.recorder), self._on_read, self._on_not_read, self)
 
     @Slot(object)
     def _on_fetched(self, _recorder: Recorder) -> None:
         self._read_next()
 
-    def _on_read(self, result: tuple[StoredRecording, Recording]) -> None:
-        stored, read_back = result
+    def _on_read(self, result: tuple[StoredRecording, Recording, Mapping[str, SamplesReceived]]) -> None:
+        stored, read_back, received = result
         stopped = self._taken()
         memory = stopped.recorder.memory
         lacks = memory.lacks() if memory is not None else ()
         self._readings = 0
         self._waiting.remove(stopped)
-        self.read.emit(stopped, SessionRecording(stored, read_back, stopped.strides, stored.is_decided, lacks))
+        self.read.emit(
+            stopped, SessionRecording(stored, read_back, stopped.strides, stored.is_decided, lacks, received)
+        )
         self._read_next()
 
     def _on_not_read(self, what: str, _remedy: str) -> None:
@@ -142,6 +145,22 @@ class ReadingBack(QObject):
         stopped, self._reading = self._reading, None
         assert stopped is not None  # it was asked for
         return stopped
+
+
+def _read_and_counted(
+    recorder: Recorder, opened: "OpenedLibrary"
+) -> tuple[StoredRecording, Recording, dict[str, SamplesReceived]]:
+    """What a journal holds, and by sensor how much was received of what was expected.
+
+    Sensors that record in their memories begin and end one after the other; `SessionRecording.lacks` is theirs.
+    """
+    stored, recording = recorder.stop(opened)
+    if recorder.memory is not None:
+        return stored, recording, {}
+    placed = stored.placement.sensors if stored.placement is not None else {}
+    rates_hz = {site: one.info.rate_hz for site, one in placed.items()}
+    counts = samples_received(recording, rates_hz, placed)
+    return stored, recording, {placed[site].name: one for site, one in counts.items() if site in placed}
 
 
 def _without_samples(recorder: Recorder, opened: "OpenedLibrary") -> None:

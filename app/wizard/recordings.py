@@ -31,6 +31,7 @@ from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.session import Recording, RecordingKind
+from devices.source import SensorCounts
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
@@ -80,6 +81,7 @@ class SessionRecordings(QObject):
         self._is_without_row = False
         self._acquisition: Acquisition | None = None
         self._lost_before: Mapping[str, int] = {}
+        self._counts_before: Mapping[str, SensorCounts] = {}
         self._must_keep = True
         self._strides: Mapping[Side, int] | None = None
         self._is_restrapped = False
@@ -240,6 +242,7 @@ class SessionRecordings(QObject):
         self._must_keep, self._strides = True, None
         self._latest, self._trouble, self._is_without_row = None, None, False
         self._acquisition, self._lost_before = acquisition, acquisition.lost()
+        self._counts_before = {name: one.counts for name, one in acquisition.status().items()}
         session_id = self.session.id
         begun = self._beginning = Future[Recorder]()
 
@@ -334,6 +337,18 @@ class SessionRecordings(QObject):
             return 0
         now = self._acquisition.lost()
         return sum(max(count - self._lost_before.get(name, 0), 0) for name, count in now.items())
+
+    def received_so_far(self) -> dict[str, tuple[int, int]]:
+        """Samples received and lost since the recording that goes on began, by sensor; of those whose loss shows."""
+        if self._acquisition is None or not self.has_begun or self.is_in_memory:
+            return {}
+        counts = {}
+        for name, one in self._acquisition.status().items():
+            before = self._counts_before.get(name, SensorCounts())
+            if one.details.is_loss_seen and one.details.rate_hz is not None:
+                lost = max(one.counts.lost - before.lost, 0)
+                counts[name] = one.counts.received - before.received, lost
+        return counts
 
     @property
     def is_written(self) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from app.wizard.losses import NOTHING, Message
 from app.wording.body import name_of
 from app.wording.numbers import clock
+from app.wording.received import lossy_sentence
 from app.wording.translation import capitalised, tr
 from core.body import Joint, Segment, Side, Site
 from core.calibration.strap import Slip
@@ -13,6 +14,7 @@ from core.live.bias import BiasCorrection
 
 if TYPE_CHECKING:
     from app.acquisition.memory_fetching import Lack
+    from core.signal.received import SamplesReceived
 
 STRIDES_FOR_SPREAD = 10
 
@@ -104,6 +106,13 @@ def lacks_message(walk: str, lacks: "Sequence[Lack]") -> Message:
         what = tr("{sensor} did not report the end of {walk}.").format(sensor=lacks[0].sensor, walk=walk)
         return what, tr("Received data are saved; the end of the walk may be missing.")
     return NOTHING
+
+
+def lossy_message(counts: "Mapping[Site, SamplesReceived]") -> Message:
+    """Say which sensors lose samples while they are recorded."""
+    if not (what := lossy_sentence(counts)):
+        return NOTHING
+    return what, tr("Recording continues. Move the receiver nearer to the patient, and keep it in sight.")
 
 
 def loose_message(on_own_clocks: Sequence[str]) -> Message:

@@ -89,6 +89,10 @@ SENTENCES = {
         "This sensor was not synchronised with the others; its start was set to theirs, and joints whose movement "
         "does not show the remaining offset are excluded. Synchronise the sensors before the next recording."
     ),
+    "split_clocks": (
+        "The recording was split where the clock of one sensor went on from another time. From there on, the sensors "
+        "are not synchronised; joints whose movement does not show the remaining offset are excluded."
+    ),
     "sensor_changed": (
         "A different sensor was worn in the recording before. The earlier calibration does not apply; record free "
         "motion again."

@@ -73,15 +73,30 @@ def gaps_of(received_s: FloatArray) -> FloatArray:
 
 def pauses_of(recording: Recording) -> list[Pause]:
     """When no sensor of a recording was received for longer than a stride takes."""
+    blocks = recording.imu.values()
+    return pauses_among([one.time_s[is_received(one.time_s, one.gyr_rad_s, one.acc_m_s2)] for one in blocks])
+
+
+def pauses_among(received: Sequence[FloatArray]) -> list[Pause]:
+    """As `pauses_of`, of the times (n,) at which samples of each sensor were received, on one clock."""
     common: list[Pause] | None = None
-    for block in recording.imu.values():
-        received_s = block.time_s[is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+    for received_s in received:
         if len(received_s) < MIN_STRETCH_SAMPLES:
             continue
         gaps = [(float(a), float(b)) for a, b in gaps_of(received_s) if b - a >= LEAST_PAUSE_S]
-        both = gaps if common is None else [(max(a, c), min(b, d)) for a, b in common for c, d in gaps]
+        both = gaps if common is None else _common(common, gaps)
         common = [(a, b) for a, b in both if b - a >= LEAST_PAUSE_S]
     return common or []
+
+
+def _common(some: Sequence[Pause], others: Sequence[Pause]) -> list[Pause]:
+    """Give what two ascending rows of gaps have in common, in the time that their lengths take together."""
+    found, at, other = [], 0, 0
+    while at < len(some) and other < len(others):
+        (a, b), (c, d) = some[at], others[other]
+        found.append((max(a, c), min(b, d)))
+        at, other = (at + 1, other) if b < d else (at, other + 1)
+    return found
 
 
 def outside_of(pauses: Sequence[Pause], gaps_s: FloatArray) -> FloatArray:

@@ -159,7 +159,7 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         return details_of(gather(files, choices, are_one=asked["are_one"]), arrays)
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
-    return details_of(read_trial(asked["format"], files, asked["rate_hz"], choices), arrays)
+    return details_of(read_trial(asked["format"], files, asked["rate_hz"], choices, splits=asked["splits"]), arrays)
 
 
 def _limit_reference(path: Path) -> None:

@@ -2,10 +2,13 @@
 
 A stamp that fits neither those before nor those after is put where it belongs, with a finding; where that is unknown
 its sample is left out. Where the clock goes on from another time than it left off, nothing shows how much time passed:
-the file is refused with the place, so that nobody reads a false rate or half a recording.
+the file is refused with the place, so that nobody reads a false rate or half a recording. Only who will split it there
+reads on: see `restarts_continued`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +27,8 @@ DRIFT = 0.02  # as above, of a long run
 MOST_LOST = 1000  # steps: what may be missing beside a wrong stamp
 LEAST = 4 * FEW  # samples, of which a few at an end may be left out
 MOST_RUNS = 100  # that are looked for through the whole file
+MOST_RESTARTS = 20  # of one clock: what restarts more often is no clock
+RESTARTED = "clock_restarted"  # the finding of a clock that was continued, for `formats.read_trial` alone
 WINDOW = 16  # samples over which steps are averaged: stamps may come in batches, or be rounded
 
 
@@ -89,9 +94,13 @@ def repaired(
     rows = np.flatnonzero(np.isfinite(mended))
     times = mended[rows]
     usual = step or _usual_step(times)
+    restarts: list[_Restart] = []
     runs, lasting = _wrong_runs(times, usual, slack)
-    if lasting is not None:
-        raise steps_back(clock, int(rows[lasting]), times[lasting - 1], times[lasting])
+    while lasting is not None:
+        refusal = steps_back(clock, int(rows[lasting]), times[lasting - 1], times[lasting])
+        restarts.append(_continued_at(times, lasting, usual, refusal, len(restarts)))
+        mended[rows] = times
+        runs, lasting = _wrong_runs(times, usual, slack)
     findings = []
     if runs:
         first = runs[0].first
@@ -111,18 +120,90 @@ def repaired(
         mended[rows] = times
     is_new = is_later(mended)
     found = RepairedClock(mended, is_new, ())
-    return RepairedClock(mended, is_new, (*findings, *_doubled(found.doubled if not slack else 0)))
+    doubled = _doubled(found.doubled if not slack else 0)
+    restarted = [_restart_finding(one, is_new[rows], times, clock.unit_s) for one in restarts]
+    return RepairedClock(mended, is_new, (*findings, *doubled, *restarted))
+
+
+@dataclass(frozen=True, slots=True)
+class _Restart:
+    """A clock that began again at stamp `at`, those after it moved by `shift`; `refusal`: where it is not split."""
+
+    at: int
+    shift: float
+    refusal: FileRefusedError
+
+
+_continued: ContextVar[list[FileRefusedError] | None] = ContextVar("continued clocks", default=None)
+
+
+@contextmanager
+def restarts_continued() -> Iterator[list[FileRefusedError]]:
+    """Let clocks that begin again go on one step after they left off, instead of refusing their files.
+
+    It gives what would have been refused. A variable of the context, for it concerns whoever reads the trial, and no
+    reader: each of them passes on the findings of its clocks.
+    """
+    met: list[FileRefusedError] = []
+    token = _continued.set(met)
+    try:
+        yield met
+    finally:
+        _continued.reset(token)
+
+
+def _continued_at(times: FloatArray, at: int, step: float, refusal: FileRefusedError, count: int) -> _Restart:
+    """Move all stamps from `at` on behind those before, in place; raises `refusal` where nobody will split there."""
+    met = _continued.get()
+    if met is None or count >= MOST_RESTARTS:
+        raise refusal
+    met.append(refusal)
+    shift = float(times[at - 1] + step - times[at])
+    times[at:] += shift
+    return _Restart(at, shift, refusal)
+
+
+def _restart_finding(restart: _Restart, is_new: BoolArray, times: FloatArray, unit_s: float) -> Finding:
+    """`samples` of `of`: those before it, of all that have a new time."""
+    refusal = restart.refusal
+    numbers: Mapping[str, float | int | str] = {
+        "samples": int(np.sum(is_new[: restart.at])),
+        "of": int(np.sum(is_new)),
+        "after_s": float(np.nanmax(times[: restart.at]) - np.nanmin(times)) * unit_s,
+        "shift_s": restart.shift * unit_s,
+        "where": refusal.where,
+        **{name: str(value) for name, value in refusal.values.items()},
+    }
+    return Finding(RESTARTED, Severity.GRAVE, "", numbers)
+
+
+def restart_refusal(finding: Finding) -> FileRefusedError:
+    """The refusal of a clock that was continued, where its recording is not split there."""
+    of = finding.numbers
+    return _steps_back(str(of["where"]), str(of["name"]), str(of["before"]), str(of["after"]))
+
+
+def continued(
+    time_s: FloatArray, clock: FileClock, next_back: Callable[[FloatArray], int | None], step_s: float
+) -> tuple[FloatArray, tuple[Finding, ...]]:
+    """Times (n,) continued wherever `next_back` finds the first that is lastingly earlier; raises FileRefusedError."""
+    times = time_s.copy()
+    restarts: list[_Restart] = []
+    while (back := next_back(times)) is not None:
+        refusal = steps_back(clock, back, float(times[back - 1]), float(times[back]))
+        restarts.append(_continued_at(times, back, step_s, refusal, len(restarts)))
+    every = np.ones(len(times), dtype=bool)
+    return times, tuple(_restart_finding(one, every, times, 1.0) for one in restarts)
 
 
 def steps_back(clock: FileClock, row: int, before: float, after: float) -> FileRefusedError:
     """The refusal of a clock that steps back at a row and goes on from there."""
+    return _steps_back(f"{clock.where}, {clock.place(row)}", clock.name, f"{before:.12g}", f"{after:.12g}")
+
+
+def _steps_back(where: str, name: str, before: str, after: str) -> FileRefusedError:
     return FileRefusedError(
-        f"{clock.where}, {clock.place(row)}",
-        "{name} goes back from {before} to {after}",
-        SPLIT_IT,
-        name=clock.name,
-        before=f"{before:.12g}",
-        after=f"{after:.12g}",
+        where, "{name} goes back from {before} to {after}", SPLIT_IT, name=name, before=before, after=after
     )
 
 

@@ -5,8 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
+from devices.files.clock_repair import RESTARTED, restart_refusal, restarts_continued
 from devices.files.csv_tables import choices_for, csv_recording, csv_trial, is_csv, why_no_csv
 from devices.files.matlab_tables import matlab_trial
 from devices.files.matlab_variables import is_matlab
@@ -21,7 +24,7 @@ from devices.files.session_toml import FILE_NAME
 from devices.files.shimmer_tables import is_shimmer, shimmer_trial
 from devices.files.table_choices import NOTHING_STATED, StatedChoices
 from devices.files.text_files import as_utf8
-from devices.files.trial import SIMULATED_MARK, ImportedTrial
+from devices.files.trial import SIMULATED_MARK, ClockRestart, ImportedSensor, ImportedTrial
 from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.ximu3_files import is_ximu3, ximu3_recording, ximu3_trial
 from devices.files.ximu_files import is_ximu, ximu_recording, ximu_trial
@@ -64,12 +67,24 @@ FORMATS: Mapping[str, FileFormat] = {
 
 
 def read_trial(
-    name: str, files: Sequence[Path], rate_hz: float | None, choices: StatedChoices = NOTHING_STATED
+    name: str,
+    files: Sequence[Path],
+    rate_hz: float | None,
+    choices: StatedChoices = NOTHING_STATED,
+    *,
+    splits: bool = False,
 ) -> ImportedTrial:
     """Read one trial's files, of the recognised format where `name` is empty; raises FileRefusedError or OSError.
 
-    `choices`: what somebody states of tables, whose format it takes the place of.
+    `choices`: what somebody states of tables, whose format it takes the place of. `splits`: clocks that begin again
+    are continued and stated (`ImportedSensor.restarts`), for whoever splits the recording there; else they are refused.
     """
+    if splits:
+        with restarts_continued() as met:
+            try:
+                return _with_restarts(read_trial(name, files, rate_hz, choices), met)
+            except FileRefusedError as refusal:
+                raise (met[0] if met else refusal) from refusal  # what follows may be due to it
     for path in files:
         _refuse_missing(path)
     every, mappings = without_mappings(list({path.resolve(): path for path in files}.values()))
@@ -86,6 +101,32 @@ def read_trial(
     for path in mappings:
         found = with_names(found, read_mapping(path))
     return replace(found, is_simulated=found.is_simulated or any(map(_is_of_simulated_session, every)))
+
+
+def _with_restarts(trial: ImportedTrial, met: Sequence[FileRefusedError]) -> ImportedTrial:
+    """The trial with its clocks' restarts in place of their findings; raises FileRefusedError for one that is lost."""
+    sensors = tuple(map(_with_its_restarts, trial.sensors))
+    stated = {str(one.refusal) for sensor in sensors for one in sensor.restarts}
+    for refusal in met:
+        if str(refusal) not in stated:
+            raise refusal  # its reader lost it
+    return replace(trial, sensors=sensors)
+
+
+def _with_its_restarts(sensor: ImportedSensor) -> ImportedSensor:
+    restarts = []
+    time_s = sensor.block.time_s
+    for finding in sensor.findings:
+        if finding.key != RESTARTED:
+            continue
+        of = finding.numbers
+        at = int(of["samples"])
+        if of["of"] != len(time_s):  # samples were left out since
+            at = int(np.searchsorted(time_s, time_s[:1].sum() + float(of["after_s"]), side="right"))
+        if 0 < at < len(time_s):
+            restarts.append(ClockRestart(at, float(of["shift_s"]), restart_refusal(finding)))
+    others = tuple(finding for finding in sensor.findings if finding.key != RESTARTED)
+    return replace(sensor, findings=others, restarts=tuple(restarts))
 
 
 def recognised(files: Sequence[Path]) -> str:

@@ -10,13 +10,13 @@ from core.findings import Finding, Severity
 from core.samples import ImuBlock, SensorInfo
 from core.session import Recording, RecordingKind, Session
 from core.signal.clock_jumps import jump_of, spans_of
-from devices.files.clock_repair import SPLIT_IT
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.site_files import sensor_changes
 from devices.files.site_names import site_of_name
 from devices.files.trial import ImportedSensor, ImportedTrial, plain_id
 
 MAP = "--map"
+SPLIT_AT = "Split the recording there (--split-at {at}), or export it again"
 RECEIVER = "one receiver"  # the clock's id, where somebody states that the sensors shared one
 AS_IN = "Write the assignment as left_thigh=FILE_OR_SENSOR_ID,left_shank=FILE_OR_SENSOR_ID"
 
@@ -95,6 +95,7 @@ def place_sensors(
     if is_one_receiver:
         placed = [(site, _on_one_receiver(sensor)) for site, sensor in placed]
     sensors = [sensor for _, sensor in placed]
+    _refuse_restarts(sensors)
     _refuse_apart(sensors)
     _refuse_jumps(sensors)
     start_s = min((sensor.block.time_s[0] for sensor in sensors if len(sensor.block)), default=0.0)
@@ -174,6 +175,19 @@ def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
         )
 
 
+def _refuse_restarts(sensors: Sequence[ImportedSensor]) -> None:
+    for sensor in sensors:
+        for restart in sensor.restarts:
+            of, time_s = restart.refusal, sensor.block.time_s
+            at = _from_start(sensors, float(time_s[restart.at]))
+            raise FileRefusedError.stated_elsewhere(of.where, of.what, SPLIT_AT, {**of.values, "at": at})
+
+
+def _from_start(sensors: Sequence[ImportedSensor], time_s: float) -> str:
+    """A time as `--split-at` takes it: from the first sample of all sensors."""
+    return f"{time_s - min(float(one.block.time_s[0]) for one in sensors if len(one.block)):.1f}"
+
+
 def _refuse_jumps(sensors: Sequence[ImportedSensor]) -> None:
     """How much time passed between two stamps, each sensor's clock alone shows; the others show where it is wrong."""
     spans = [spans_of(sensor.block.time_s) for sensor in sensors]
@@ -184,7 +198,8 @@ def _refuse_jumps(sensors: Sequence[ImportedSensor]) -> None:
                 sensor.name,
                 "the sensor's clock jumps forward by {jump} s, {after} s after the start; no other sensor "
                 "measured that long",
-                SPLIT_IT,
+                SPLIT_AT,
+                at=_from_start(sensors, float(sensor.block.time_s[0]) + jump.after_s),
                 jump=f"{jump.by_s:.6g}",
                 after=f"{jump.after_s:.6g}",
             )
@@ -197,7 +212,7 @@ def add_recording(
     findings: Sequence[Finding] = (),
     is_simulated: bool = False,
 ) -> Session:
-    """Add the latest recording (simulated: whole session); first details stay, rates while all agree.
+    """Add the latest recording (simulated: whole session); first details stay, rates and clocks while all agree.
     Raises FileRefusedError: same name or folder, or somebody was measured in it and not in this one.
     """
     if is_simulated and session.recordings and not session.is_simulated:
@@ -258,4 +273,5 @@ def _agreed(first: SensorInfo, later: SensorInfo) -> SensorInfo:
         first,
         rate_hz=first.rate_hz if first.rate_hz == later.rate_hz else None,
         rate_kind=first.rate_kind if first.rate_kind == later.rate_kind else None,
+        clock=first.clock if later.clock in ("", first.clock) else "",
     )

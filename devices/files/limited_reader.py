@@ -293,6 +293,8 @@ class LimitedReading:
         files: Sequence[Path],
         rate_hz: float | None,
         choices: StatedChoices = NOTHING_STATED,
+        *,
+        splits: bool = False,
     ) -> ImportedTrial:
         """As `formats.read_trial` does."""
         task = {
@@ -300,6 +302,7 @@ class LimitedReading:
             "format": format_name,
             "files": [str(path) for path in files],
             "rate_hz": rate_hz,
+            "splits": splits,
             "choices": details_of(choices, []),
         }
         where = ", ".join(path.name for path in files)

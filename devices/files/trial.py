@@ -57,6 +57,19 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
 
 
 @dataclass(frozen=True, slots=True)
+class ClockRestart:
+    """A clock that began again: its times go on one step after it left off, and nobody knows how long it was.
+
+    `at`: how many samples are before it. `shift_s`: what was added to the times after it. `refusal`: of a
+    recording that is not split there.
+    """
+
+    at: int
+    shift_s: float
+    refusal: FileRefusedError
+
+
+@dataclass(frozen=True, slots=True)
 class ImportedSensor:
     """One sensor and its samples: SI units, sensor axes; seconds on the clock that all sensors of the trial share.
 
@@ -70,6 +83,11 @@ class ImportedSensor:
     block: ImuBlock
     info: SensorInfo
     findings: tuple[Finding, ...] = ()
+    restarts: tuple[ClockRestart, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not all(0 < one.at < len(self.block) for one in self.restarts):
+            raise ValueError(f"a clock restarts outside of the {len(self.block)} samples of {self.name}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ Not held against a recording of LabRecorder: against files that are laid out her
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy as np
 from core.findings import Finding, Severity
 from core.samples import FloatArray
 from devices.drivers.lsl import sensors_of
-from devices.files.clock_repair import FileClock, repaired, steps_back
+from devices.files.clock_repair import FileClock, continued, repaired
 from devices.files.column_names import XYZ, listed, sensor_columns
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable
@@ -124,6 +125,8 @@ def _table(
         is_there = np.isfinite(mended.stamps)
         time_s, stream = mended.stamps[is_there], replace(stream, samples=stream.samples[is_there])
         findings += mended.findings
+        time_s, restarted = continued(time_s, clock, partial(lasting_step_back, rate_hz=1.0 / step_s), step_s)
+        findings += restarted
         straight = _straightened(time_s, 1.0 / step_s, clock)
         if straight is not None:
             time_s = straight.time_s
@@ -166,9 +169,6 @@ def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], dict[str, str], 
 
 def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> StraightTimes | None:
     """Straight times, where the stamps need them and the line has the rate that the sender reports."""
-    back = lasting_step_back(stamp_s, rate_hz)
-    if back is not None:
-        raise steps_back(clock, back, float(stamp_s[back - 1]), float(stamp_s[back]))
     straight = straight_times(stamp_s, rate_hz)
     if straight is not None and abs(straight.rate_hz / rate_hz - 1.0) > MOST_OFF_RATE:
         raise FileRefusedError(

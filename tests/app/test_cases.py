@@ -86,6 +86,14 @@ def xdf_stamps_step_back(case: Case) -> None:
     assert outcome.code == 2
     assert 'thigh, sample 801: "time" goes back from 7.99 to 7.5' in outcome.text
     assert not case.out.exists()
+    placed = "left_thigh=thigh,left_shank=shank"
+    assert case.run("import", "r.xdf", "--split-at", "8.0", "--map", placed, "--out", case.out).code == 0
+    legs = [walk["left"] for walk in case.analyse(case.out)["walks"].values()]
+    strides = np.array([leg["strides_used"] for leg in legs])
+    times_s = np.array([leg["stride_time_s_mean"] for leg in legs])
+    assert len(legs) == 2
+    assert float(times_s @ strides / strides.sum()) == pytest.approx(1.080, abs=0.005)
+    assert [leg["knee_range_deg_mean"] for leg in legs] == [pytest.approx(61.7, abs=1.0)] * 2
 
 
 def xdf_block_jumps(case: Case) -> None:
@@ -112,6 +120,8 @@ def ximu3_restarted(case: Case) -> None:
     assert outcome.code == 2
     assert "line 902: Timestamp (us) goes back from 8990000 to 500000" in outcome.text
     assert "repeat" not in outcome.text
+    assert case.import_two("--split-at", "9.0", thigh="lt", shank="ls").code == 0
+    assert [len(one.imu[Site.LEFT_SHANK]) for one in read_session(case.out).recordings] == [900, 782]
 
 
 def clock_jumps_forward(case: Case) -> None:
@@ -120,6 +130,8 @@ def clock_jumps_forward(case: Case) -> None:
     assert "ls: the sensor's clock jumps forward by 10800 s, 8.99 s after the start" in outcome.text
     assert "missing" not in outcome.text
     assert "receiver" not in outcome.text
+    assert case.import_two("--split-at", "9.0", thigh="lt", shank="ls").code == 0
+    assert "split_clocks" in case.reported()
 
 
 def clipped_at_2g(case: Case) -> None:
@@ -235,7 +247,9 @@ def case(
         "read_foreign_session": lambda folder, _waiting: read_session(folder),
         "read_foreign_reference": lambda path, _waiting: read_reference(path),
         "write_over_session": write_session,
-        "read_foreign_trial": lambda name, files, rate_hz, _waiting, choices: read_trial(name, files, rate_hz, choices),
+        "read_foreign_trial": lambda name, files, rate_hz, _waiting, choices, splits: read_trial(
+            name, files, rate_hz, choices, splits=splits
+        ),
     }
     patched = set()
     for module in (agree, import_files, places):

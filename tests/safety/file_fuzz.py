@@ -126,7 +126,7 @@ def read_of(name: str, file: str) -> Callable[[LimitedReader, Path], object]:
     """Reads `file` as of this format, and places its first sensor."""
 
     def read(reader: LimitedReader, folder: Path) -> object:
-        trial = LimitedReading(reader, nobody).read_trial(name, [folder / file], None)
+        trial = LimitedReading(reader, nobody).read_trial(name, [folder / file], None, splits=True)
         return place_trial(trial, {Site.LEFT_THIGH: trial.sensors[0].name}, "walk 1")
 
     return read

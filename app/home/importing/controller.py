@@ -14,7 +14,7 @@ from app.home.importing.found import FilesRead, Found, HowRead, read_files
 from app.home.importing.import_page import ImportPage
 from app.home.importing.import_words import program_name
 from app.home.importing.table_words import refused_line
-from app.importing.import_drafts import SessionDraft, chains_of_motion, session_of
+from app.importing.import_drafts import SessionDraft, chains_of_motion, session_of, split_draft
 from app.storage.exchange import import_session
 from app.system.progress import Report
 from app.theme.icons import Icon
@@ -57,6 +57,7 @@ class Importing(LongWork):
         self._how = HowRead()
         self._read = FilesRead((), (), (), ())
         self._placing: SessionDraft | None = None
+        self._unsplit: SessionDraft | None = None  # as it was read, of what is shown
         self._is_importing = False
         self.page = ImportPage()
         self._explaining = Explaining(controller, self.page.table, self)
@@ -72,6 +73,8 @@ class Importing(LongWork):
         self.page.draft.placing_requested.connect(self._on_placing_requested)
         self.page.draft.columns_requested.connect(self._on_columns_requested)
         self.page.draft.combining_requested.connect(self._on_combining_requested)
+        self.page.draft.split_requested.connect(self._on_split_requested)
+        self.page.draft.joining_requested.connect(self._on_joining_requested)
 
     @property
     def bar(self) -> BarState:
@@ -245,6 +248,7 @@ class Importing(LongWork):
             code = session.patient.code
             self.page.show_session(where, names, code, session.findings, is_simulated=session.is_simulated)
         elif shown.draft is not None:
+            self._unsplit = shown.draft
             program = program_name(shown.draft.recordings[0].trial.format)
             parts = [one for one in (shown, *self._waiting) if one.is_part and shown.is_part]
             can_be_combined = len({Path(file).parent for one in parts for file in one.files}) < len(parts)
@@ -254,6 +258,26 @@ class Importing(LongWork):
             if self.page.draft.can_be_placed:
                 self._place(self._on_proposed, self._on_not_proposed)
         self.asked.emit()
+
+    def _on_split_requested(self, number: int, at_s: float) -> None:
+        if self.shown is None or (draft := self.shown.draft) is None:
+            return
+
+        def work(_opened: "OpenedLibrary") -> tuple[SessionDraft, SessionDraft, int]:
+            return draft, split_draft(draft, number, at_s), number
+
+        self._controller.run(work, self._on_split, self._on_placing_refused, self)
+
+    def _on_split(self, split: tuple[SessionDraft, SessionDraft, int]) -> None:
+        before, after, number = split
+        if self.shown is not None and self.shown.draft is before:
+            self.shown = replace(self.shown, draft=after)
+            self.page.draft.show_split(after, number)
+
+    def _on_joining_requested(self) -> None:
+        if self.shown is not None and self._unsplit is not None:
+            self.shown = replace(self.shown, draft=self._unsplit)
+            self.page.draft.show_joined(self._unsplit)
 
     def _on_placing_requested(self) -> None:
         self._place(self._on_placed, self._on_placing_refused)

@@ -91,7 +91,7 @@ def read_files(paths: Sequence[Path], how: HowRead, report: Report) -> FilesRead
             if one.format == SESSION:
                 folders.append(Found(str(files[0]), one.files, read_foreign_session(files[0], waiting)))
                 continue
-            trial = read_foreign_trial(one.format, files, how.rate_hz, waiting, choices)
+            trial = read_foreign_trial(one.format, files, how.rate_hz, waiting, choices, splits=True)
         except FileRefusedError as refusal:
             refused.append(refusal)
             again += files if one.format != SESSION else []

@@ -1,10 +1,13 @@
 """Recordings of another program and their sensors: what each is and where it was worn, to be confirmed or changed."""
 
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.home.importing.clock_part import ClockPart
 from app.home.importing.import_words import (
     KIND_WORDS,
     SITE_WORDS,
@@ -31,6 +34,7 @@ from app.wording.translation import joined, tr, tr_n
 from core.body import Side, Site
 from core.placement.chains import USUAL_SITES
 from core.session import RecordingKind
+from core.signal.clock_events import ClockEventKind
 
 if TYPE_CHECKING:
     from core.placement.chains import Chains
@@ -45,17 +49,21 @@ class DraftCards(QWidget):
     placing_requested = Signal()  # the motion shall say where the sensors were
     columns_requested = Signal()  # what the columns mean shall be shown, and may be changed
     combining_requested = Signal()  # the files shall be one recording
+    split_requested = Signal(int, float)  # the recording of this number shall be two, at this time
+    joining_requested = Signal()  # all that was split shall be as it was read
 
     def __init__(self, of_code: QWidget) -> None:
         super().__init__()
         self._recordings: list[_RecordingRow] = []
         self._sensors: list[_SensorRow] = []
         self._chains: Chains | None = None
+        self._program = ""
         self._of_recordings, self._of_sensors = Card(padding=20, spacing=12), Card(padding=20, spacing=8)
         self._recordings_title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self._recording_rows = QVBoxLayout()
         self.columns = Button(tr("Check the columns"), ButtonKind.SECONDARY, Icon.EDIT, height=40)
         self.combine = Button(tr("Combine into one recording"), ButtonKind.SECONDARY, Icon.GROUPS, height=40)
+        self.join = Button(tr("Undo splitting"), ButtonKind.SECONDARY, Icon.REPEAT, height=40)
         self._sensors_title = Text(tr("Sensor positions"), size=16, weight=SEMIBOLD, wraps=True)
         self._sensor_rows = QGridLayout()
         self.place = Button(tr("Detect from movement"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
@@ -105,13 +113,26 @@ class DraftCards(QWidget):
             return tr("Enter the position of at least one sensor.")
         if not any(self.kinds):
             return tr("All recordings are excluded.")
+        for row in self._recordings:
+            if row.kind.currentData() != OPEN and row.breaks(self.sites):
+                return tr("{name}: split it where its clock restarts or jumps, or exclude it.").format(name=row.title)
         return ""
 
     @property
     def tab_order(self) -> list[QWidget]:
-        kinds: list[QWidget] = [row.kind for row in self._recordings]
+        kinds: list[QWidget] = [part for row in self._recordings for part in (row.kind, *row.split_buttons)]
         sites = [row.site for row in self._sensors]
-        return [*kinds, self.columns, self.combine, *sites, self.place, self.is_left, self.is_right, self.one_receiver]
+        return [
+            *kinds,
+            self.columns,
+            self.combine,
+            self.join,
+            *sites,
+            self.place,
+            self.is_left,
+            self.is_right,
+            self.one_receiver,
+        ]
 
     def show_folder(self) -> None:
         """Show nothing but the code: what a session folder states of its recordings and sensors holds."""
@@ -132,23 +153,55 @@ class DraftCards(QWidget):
             shown.remove()
         for sensor in self._sensors:
             sensor.remove()
-        count = len(draft.recordings)
-        title = tr_n("{count} recording of {program}", "{count} recordings of {program}", count)
-        self._recordings_title.setText(title.format(count=count, program=program))
-        self._recordings = [_RecordingRow(self._recording_rows, one) for one in draft.recordings]
+        self._program = program
+        self._show_recordings(draft)
         longest = max(draft.recordings, key=lambda one: max((len(s.block) for s in one.trial.sensors), default=0))
         self._sensors = [_SensorRow(self._sensor_rows, one, longest) for one in draft.sensors]
-        for row in self._recordings:
-            row.kind.currentIndexChanged.connect(self._on_changed)
         for sensor in self._sensors:
             sensor.site.currentIndexChanged.connect(self._on_changed)
         self.columns.setVisible(has_columns)
         self.combine.setVisible(can_be_combined)
+        self.join.hide()
         self.one_receiver.show_on(False)
         self.one_receiver.setVisible(draft.is_clock_open)
         for card in (self._of_recordings, self._of_sensors):
             hear_as_laid_out(card)
         self._on_changed()
+
+    def show_split(self, draft: SessionDraft, number: int) -> None:
+        """Show that recording `number` is two; what was chosen of all stays."""
+        kinds = self.kinds
+        self._show_split(draft, [*kinds[: number + 1], *kinds[number:]])
+        self.join.show()
+        (self._recordings[number + 1].split_buttons or [self._recordings[number + 1].kind])[0].setFocus()
+
+    def show_joined(self, draft: SessionDraft) -> None:
+        """Show recordings as they were read, after some were split."""
+        self._show_split(draft, [one.kind for one in draft.recordings])
+        self.join.hide()
+        self._recordings[0].kind.setFocus()
+
+    def _show_split(self, draft: SessionDraft, kinds: Sequence[RecordingKind | None]) -> None:
+        for shown in self._recordings:
+            shown.remove()
+        self._show_recordings(draft)
+        for row, kind in zip(self._recordings, kinds, strict=True):
+            row.kind.setCurrentIndex(row.kind.findData(kind or OPEN))
+        self.one_receiver.setVisible(draft.is_clock_open)
+        hear_as_laid_out(self._of_recordings)
+        self._on_changed()
+
+    def _show_recordings(self, draft: SessionDraft) -> None:
+        count = len(draft.recordings)
+        title = tr_n("{count} recording of {program}", "{count} recordings of {program}", count)
+        self._recordings_title.setText(title.format(count=count, program=self._program))
+        self._recordings = []
+        for number, one in enumerate(draft.recordings):
+            row = _RecordingRow(self._recording_rows, one)
+            row.kind.currentIndexChanged.connect(self._on_changed)
+            if row.clock is not None:
+                row.clock.split_requested.connect(partial(self.split_requested.emit, number))
+            self._recordings.append(row)
 
     def show_chains(self, chains: "Chains", *, takes_focus: bool) -> bool:
         """Take the legs found from motion and ask which is left unless sites show it; False: sites contradict."""
@@ -166,7 +219,7 @@ class DraftCards(QWidget):
         return True
 
     def _build(self, of_code: QWidget) -> None:
-        verbs = lay_out(QHBoxLayout(), self.columns, self.combine, 1)
+        verbs = lay_out(QHBoxLayout(), self.columns, self.combine, self.join, 1)
         lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, verbs, 1)
         self._sensor_rows.setColumnStretch(0, 1)
         buttons = lay_out(QHBoxLayout(), self.place, self.is_left, self.is_right, 1)
@@ -179,6 +232,7 @@ class DraftCards(QWidget):
         )
         self.columns.clicked.connect(self.columns_requested)
         self.combine.clicked.connect(self.combining_requested)
+        self.join.clicked.connect(self.joining_requested)
         self.place.clicked.connect(self._on_place)
         self.is_left.clicked.connect(lambda: self._on_side(Side.LEFT))
         self.is_right.clicked.connect(lambda: self._on_side(Side.RIGHT))
@@ -244,13 +298,30 @@ class _RecordingRow:
         grid.addWidget(Text(breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
         grid.addWidget(curve, 0, 1)
         grid.addWidget(self.kind, 0, 2, Qt.AlignmentFlag.AlignRight)
-        stated = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
+        stated = f"{facts(recording.trial, recording.clocks)} · {kind_origin_words(recording.origin)}"
         grid.addWidget(Text(stated, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
         for unread in recording.trial.unread:
             grid.addWidget(
                 Text(refused_line(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3
             )
+        self.title, self._trial, self._clocks = recording.title, recording.trial, recording.clocks
+        self.clock: ClockPart | None = None
+        if recording.clocks.events:
+            names = [sensor.name for sensor in recording.trial.sensors]
+            self.clock = ClockPart(recording.clocks, names)
+            grid.addWidget(self.clock, grid.rowCount(), 0, 1, 3)
         column.addWidget(self._part)
+        self._part.show()  # at once, so that it can have the focus
+
+    @property
+    def split_buttons(self) -> list[QWidget]:
+        return list(self.clock.buttons) if self.clock is not None else []
+
+    def breaks(self, sites: Mapping[str, Site | None]) -> bool:
+        """Whether the clock of a sensor that is placed restarts or jumps."""
+        placed = {k for k, one in enumerate(self._trial.sensors) if sites.get(key_of(one)) is not None}
+        broken = (ClockEventKind.RESTART, ClockEventKind.JUMP)
+        return any(one.kind in broken and placed & set(one.sensors) for one in self._clocks.events)
 
     def remove(self) -> None:
         self._part.setParent(None)

@@ -12,6 +12,8 @@ from app.wording.translation import figure_text, later, tr, tr_n
 from core.body import Site
 from core.samples import FloatArray, ImuBlock
 from core.session import RecordingKind
+from core.signal.clock_events import ClockEventKind, ClockView
+from core.signal.clock_jumps import LONGER_THAN_LOSS_S
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from devices.files.trial import PROGRAMS
 
@@ -40,21 +42,20 @@ GRAVITY_WORDS = {  # by the finding that reports it
 FEWEST_COLUMNS = 80  # of a small curve
 
 
-def facts(trial: "ImportedTrial") -> str:
+def facts(trial: "ImportedTrial", clocks: ClockView) -> str:
     """Sensors, length, rates, gravity, gaps and clock of a recording in one line."""
     blocks = [sensor.block for sensor in trial.sensors]
     filled = [block for block in blocks if len(block)]
-    first_s = min((float(block.time_s[0]) for block in filled), default=0.0)
-    last_s = max((float(block.time_s[-1]) for block in filled), default=0.0)
+    has_jump = any(one.kind is ClockEventKind.JUMP for one in clocks.events)
     count = len(blocks)
     keys = {finding.key for sensor in trial.sensors for finding in sensor.findings}
     parts = [
         tr_n("{count} sensor", "{count} sensors", count).format(count=count),
-        tr("{length} s").format(length=figure_text(last_s - first_s, ".1f")),
+        tr("{length} s").format(length=figure_text(clocks.length_s, ".1f")),
         _rates(trial),
         _gravity(filled),
         *(tr(words) for key, words in GRAVITY_WORDS.items() if key in keys),
-        _gaps(filled),
+        "" if has_jump else _gaps(filled),  # a jump looks like one
         _clock(trial),
         tr("angular rates derived from orientation") if any(block.is_rate_derived for block in blocks) else "",
     ]
@@ -91,7 +92,9 @@ def liveliness(blocks: Sequence[ImuBlock]) -> tuple[FloatArray, FloatArray]:
     block = next((block for block in blocks if len(block)), None)
     if block is None:
         return np.empty(0), np.empty(0)
-    return thin(block.time_s, np.linalg.norm(block.gyr_rad_s, axis=1), FEWEST_COLUMNS)
+    steps_s = np.diff(block.time_s, prepend=block.time_s[:1])
+    steps_s[steps_s > LONGER_THAN_LOSS_S] = 0.0  # else a clock that jumped would leave the curve no room
+    return thin(np.cumsum(steps_s), np.linalg.norm(block.gyr_rad_s, axis=1), FEWEST_COLUMNS)
 
 
 def _rates(trial: "ImportedTrial") -> str:

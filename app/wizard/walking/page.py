@@ -4,7 +4,7 @@ how the patient walks now, and what becomes of each walk. It has live curves and
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
@@ -30,6 +30,7 @@ from app.wizard.walking.bench_view import BenchState, BenchView
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
 from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
 from app.wizard.walking.readout import WalkingReadout
+from app.wizard.walking.received_card import ReceivedCard, ReceivedRow
 from app.wizard.walking.timed_result import TimedResult, TimedResultView
 from app.wizard.walking.timed_view import TimedView, TimedViewState
 from app.wizard.walking.walk_list import WalkList, WalkRow, WalkState
@@ -78,6 +79,7 @@ class WalkingPage(QWidget):
         self.tabs = Segmented(tr("View"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
         self.patient_controls = ControlsCard()  # in sight while the patient's screen is
         self.stopped = StoppedCard()
+        self.received = ReceivedCard()
         self.empty = EmptyCard()
         self.charts = WalkingCharts()
         self.memory = SensorsProgress()
@@ -144,6 +146,11 @@ class WalkingPage(QWidget):
         self._arrange()
         if had_focus and not self._has_focus():
             self.focus()
+
+    def show_received(self, rows: Sequence[ReceivedRow]) -> None:
+        """Show which sensors lost samples in which recording; nothing where none did."""
+        self.received.show_rows(rows)
+        self._arrange()
 
     def show_bench(self, state: BenchState | None) -> None:
         """Show the bench in the place of walks and curves, between walks; None: they stand there."""
@@ -256,7 +263,7 @@ class WalkingPage(QWidget):
         self._right = lay_out(QVBoxLayout(), self.figures, (self.walks, 1))
         self._middle = lay_out(QBoxLayout(ACROSS), (self._left, 1), self._right)
         self.patient_controls.setVisible(False)
-        above = (self.notice, self.patient_controls, self.tabs, self.stopped)
+        above = (self.notice, self.patient_controls, self.tabs, self.stopped, self.received)
         large = ((part, 1) for part in (self.bench, self.timed, self._middle))
         self._column = lay_out(QVBoxLayout(self._inside), *above, *large, self.next)
         lay_out(QHBoxLayout(self), self._scroll, margins=0)
@@ -291,6 +298,7 @@ class WalkingPage(QWidget):
             or (is_recording and not self._is_compact and not is_test and not self._has_memory and not has_controls)
         )
         self.tabs.setVisible(is_tabbed and not is_bench)
+        self.received.setVisible(bool(self.received.rows) and not is_recording)
         self.stopped.setVisible(self._asked is not None and not is_recording and shows_walks)
         is_memory = self._has_memory and not is_bench
         shows_curves, shows_result = shows_curves and not is_memory, shows_result and not is_memory
@@ -304,7 +312,7 @@ class WalkingPage(QWidget):
         self.walks.setVisible(has_walks and shows_walks)
         self.walks.set_restrap_offered(not is_recording)
         self._place(self.figures, self._column if self._is_compact else self._right, 0)
-        after_stopped = self._column.indexOf(self.stopped) + 1
+        after_stopped = self._column.indexOf(self.received) + 1
         self._place(self.next, self._column, after_stopped if self._is_compact else -1)
         self._middle.setDirection(DOWN if self._is_compact else ACROSS)
         self._fit()

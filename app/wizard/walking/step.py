@@ -20,12 +20,14 @@ from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
+from app.wizard.walking.received import received_of, received_rows
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_labels import label_after, labels_for, stored_label
 from app.wizard.walking.walk_notice import WalkNotice, asked_walk
 from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import WalkingBar
+from app.wording.received import received_clause
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.session import RecordingKind
@@ -393,7 +395,11 @@ class WalkingStep(Step):
         cadence = math.nan
         if self._at_stop is not None and asked is not None and not asked.is_decided:
             cadence = self._at_stop.cadence_steps_min
-        facts = facts_of(self._visit, asked, cadence) if asked is not None else ""
+        facts = ""
+        if asked is not None:
+            clauses = [facts_of(self._visit, asked, cadence), received_clause(received_of(asked))]
+            facts = " · ".join(filter(None, clauses))
+        self._page.show_received(received_rows(self._visit.recordings) if ongoing is None else ())
         self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self.bench.state() if self.bench.is_shown and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), name_in_words(self._label))

@@ -11,10 +11,12 @@ from app.wizard.walk_messages import (
     implausible_message,
     lacks_message,
     loose_message,
+    lossy_message,
     no_angles_message,
     recovered_message,
     slip_message,
 )
+from app.wizard.walking.received import received_so_far
 from core.body import Side
 
 if TYPE_CHECKING:
@@ -72,7 +74,7 @@ class WalkNotice:
             message = bias_message(view.corrections)
         if message == NOTHING and not view.joints and sensors.joints:
             return no_angles_message(sensors.sensor_at)
-        return message
+        return message if message != NOTHING else lossy_message(received_so_far(self._visit))
 
     def _few_strides(self) -> Message:
         """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""

@@ -11,6 +11,7 @@ from core.body import Site
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files import table_choices, text_files
 from devices.files.session_folder import read_session
+from tests.clock_files import ALL, TIME_S, pair, restarted, without
 from tests.devices.files.test_public_layouts import LEFT, no_header, rows_of, write
 
 BY_HAND = ["--header-line", "0", "--acc", "2,3,4", "--gyr", "5,6,7", "--gyr-unit", "rad/s", "--time", "1"]
@@ -75,3 +76,42 @@ def test_what_no_option_means_is_refused(option: str, value: str, capsys: pytest
         main(["import", "a.csv", "--preview", option, value])
     assert ended.value.code == 2
     assert option in capsys.readouterr().err
+
+
+def test_a_clock_that_restarts_is_refused_with_the_place_to_split_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [str(path) for path in pair(tmp_path, (restarted(9.0), ALL), (restarted(9.0), ALL))]
+    out = tmp_path / "session"
+    command = ["import", *files, "--map", "left_thigh=left_thigh,left_shank=left_shank", "--out", str(out)]
+    assert main(command) == 2
+    assert "Split the recording there (--split-at 9.0), or export it again." in capsys.readouterr().err
+    assert not out.exists()
+    assert main([*command, "--split-at", "9.0"]) == 0
+    stated = capsys.readouterr().out
+    assert "now holds walk 1, with 2 of 6 sites" in stated
+    assert "now holds walk 2, with 2 of 6 sites" in stated
+    assert [len(one.imu[Site.LEFT_SHANK]) for one in read_session(out).recordings] == [900, 1100]
+    assert main([*command, "--split-at", "9", "--recording", "morning"]) == 0
+    assert [one.name for one in read_session(out).recordings][2:] == ["morning", "morning 2"]
+
+
+def test_pauses_and_losses_are_reported_in_words_and_nothing_of_even_clocks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = ["--map", "left_thigh=left_thigh,left_shank=left_shank"]
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    lossy = without((6.0, 11.0), (14.0, 14.4))
+    files = [str(path) for path in pair(tmp_path / "a", (TIME_S, without((6.0, 11.0))), (TIME_S, lossy))]
+    assert main(["import", *files, *place, "--out", str(tmp_path / "one")]) == 0
+    stated = capsys.readouterr().out
+    assert "- No sensor recorded for 5.0 s, from 6.0 s on." in stated
+    assert "- left_shank: samples missing for 0.42 s, after 14.0 s." in stated
+    assert "left_thigh: samples" not in stated
+    files = [str(path) for path in pair(tmp_path / "b")]
+    assert main(["import", *files, *place, "--out", str(tmp_path / "two")]) == 0
+    stated = capsys.readouterr().out
+    assert "recorded for" not in stated
+    assert "samples missing" not in stated
+    assert "clock" not in stated

@@ -8,7 +8,7 @@ import pytest
 
 from core.body import Site
 from core.samples import FloatArray, RateKind
-from devices.files.formats import recognised
+from devices.files.formats import read_trial, recognised
 from devices.files.mvnx import mvnx_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.site_names import site_of_name
@@ -118,6 +118,8 @@ def test_missing_frames_are_a_gap_and_a_repeated_one_is_reported(tmp_path: Path)
     assert "b.mvnx, frame 101: index goes back from 99 to 5" in refusal(
         mvnx(tmp_path / "b.mvnx", held, index=[*range(100), *range(5, 205)])
     )
+    with pytest.raises(FileRefusedError, match="frame 101: index goes back from 99 to 5"):
+        read_trial("mvnx", [tmp_path / "b.mvnx"], None, splits=True)  # its stamps contradict what was continued
 
 
 def test_a_file_without_frames_is_an_empty_recording(tmp_path: Path) -> None:

@@ -126,7 +126,11 @@ def test_it_is_drawn_again_once_all_that_is_in_sight_can_be(walk: type[ReportedW
 def test_it_is_stated_above_the_walks_while_one_goes_on() -> None:
     ongoing = SimpleNamespace(began_s=0.0)
     recordings = SimpleNamespace(
-        ongoing=ongoing, is_recording=True, has_begun=True, standstill_message=lambda _worn: NOTHING
+        ongoing=ongoing,
+        is_recording=True,
+        has_begun=True,
+        standstill_message=lambda _worn: NOTHING,
+        received_so_far=dict,
     )
     sensors = SimpleNamespace(acquisition=None, joints=[], hips=[], site_of={}, sensor_at={})
     visit: Any = SimpleNamespace(recordings=recordings, sensors=sensors)

@@ -303,6 +303,39 @@ def test_a_silent_sensor_is_stated_and_so_is_its_return(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
+def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource, patient_time: PatientTime
+) -> None:
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    patient_time.wait(qtbot, 4.0)
+    assert "samples received" not in step.page.notice.text
+    source.silence("DEMO-right_foot")
+    patient_time.wait(qtbot, 1.5)
+    source.wake("DEMO-right_foot")
+    patient_time.wait(qtbot, 3.0)
+    qtbot.waitUntil(lambda: "samples received." in step.page.notice.text, timeout=PATIENCE_MS)
+    assert step.page.notice.text.startswith("R foot: ")
+    assert step.page.received.isHidden()
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    (row,) = step.page.received.rows
+    assert row.site is Site.RIGHT_FOOT
+    assert row.counts.expected - row.counts.received == pytest.approx(150, abs=10)
+    assert row.counts.longest_gap_s == pytest.approx(1.5, abs=0.1)
+    assert not step.page.received.isHidden()
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+
+
+def test_nothing_is_stated_of_samples_that_all_came(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
+) -> None:
+    walk(qtbot, step, visit, patient_time, 4.0)
+    assert step.page.received.rows == ()
+    assert step.page.received.isHidden()
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+
+
 def test_sensors_strapped_again_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     with qtbot.waitSignal(step.jumped) as jumped:
         step.page.walks.restrapped.click()
