@@ -56,7 +56,9 @@ def make_archives(folder: Path, version: str, out: Path) -> Iterator[Path]:
     """Pack the folder, with what to do with it, and Rerun for the same place, and give both archives."""
     name = f"gaitwright-{version}"
     (folder / "README.txt").write_text(readme(), encoding="utf-8")
-    of_rerun: list[str | Path] = [f"{folder.name}/{path.relative_to(folder)}" for path in sorted(folder.glob(f"{RERUN}*"))]
+    of_rerun: list[str | Path] = [
+        f"{folder.name}/{path.relative_to(folder)}" for path in sorted(folder.glob(f"{RERUN}*"))
+    ]
     without = [part for path in of_rerun for part in ("--exclude", path)]
     whole: list[str | Path] = [*without, folder.name]
     for package, parts in (("gaitwright", whole), ("gaitwright-rerun", of_rerun)):
