@@ -9,6 +9,9 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
+from devices.files.answers import Array, details_of, value_from
 from devices.files.file_format import FileFormat
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, ImportedTrial
@@ -44,9 +47,10 @@ def usable_format(offer: Offer) -> FileFormat:
 
     def trial(files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
         try:
-            found = own.trial(files, rate_hz)
-            if not isinstance(found, ImportedTrial):
-                raise TypeError(type(found).__name__)
+            arrays: list[Array] = []
+            # as who asked will understand it, so that what is of another shape is refused by its package's name
+            found: ImportedTrial = value_from(ImportedTrial, details_of(own.trial(files, rate_hz), arrays), arrays)
+            _check(found)
         except (FileRefusedError, OSError, MemoryError):  # what a reader may say
             raise
         except Exception as error:  # the edge to a stranger's reader
@@ -68,3 +72,14 @@ def usable_format(offer: Offer) -> FileFormat:
         return path.stem
 
     return FileFormat(is_it, trial, own.is_one_sensor is True, None if of_trial is None else trial_name)
+
+
+def _check(found: ImportedTrial) -> None:
+    """Raise ValueError for what no reader of ours gives."""
+    names = [sensor.name for sensor in found.sensors]
+    if not names or len(set(names)) < len(names):
+        raise ValueError("no sensor, or two of one name")
+    for sensor in found.sensors:
+        time_s = sensor.block.time_s
+        if not np.isfinite(time_s).all() or not (np.diff(time_s) > 0.0).all():
+            raise ValueError("stamps that do not ascend")
