@@ -3,8 +3,10 @@
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+
+import pytest
 
 PLUGIN = Path(__file__).parent / "examples" / "plugin"
 ALIAS = """import sys
@@ -22,6 +24,17 @@ def site_in(place: Path) -> Path:
     (site / "gaitwright").mkdir(parents=True)
     (site / "gaitwright" / "__init__.py").write_text(ALIAS, encoding="utf-8")
     return site
+
+
+def site_of_others(place: Path, patch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """For a fixture: such a folder, found by imports; what a test imports from it is forgotten after it."""
+    site = site_in(place)
+    patch.syspath_prepend(site)
+    before = set(sys.modules)
+    yield site
+    for name in set(sys.modules) - before:
+        if str(getattr(sys.modules[name], "__file__", None)).startswith(str(site)) or name.startswith("gaitwright."):
+            del sys.modules[name]
 
 
 def install_plugin(site: Path, place: Path) -> None:

@@ -19,7 +19,7 @@ from devices.stream import Received
 from devices.transport.ports import PortInfo
 from tests.devices.scripted import ScriptedChannel
 from tests.examples.new_sensor import FRAME
-from tests.other_authors import install_plugin, site_in, write_package
+from tests.other_authors import install_plugin, site_of_others, write_package
 
 GOOD = """
 from gaitwright.devices import Driver, Received, SensorDetails, SourceInfo
@@ -60,13 +60,7 @@ def frames(count: int) -> bytes:
 
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    place = site_in(tmp_path)
-    monkeypatch.syspath_prepend(place)
-    before = set(sys.modules)
-    yield place
-    for name in set(sys.modules) - before:
-        if name.startswith(("strange", "gaitwright", "another")):
-            del sys.modules[name]
+    yield from site_of_others(tmp_path, monkeypatch)
 
 
 def loaded(package: str = "strange") -> tuple[Driver, ...]:
@@ -184,8 +178,8 @@ def test_a_driver_that_fails_while_sensors_are_looked_for_is_left_out_and_ours_g
     driver, is_sure, _ = _recognised(channel, PortInfo("script"), (*DRIVERS, stranger), broken)
     assert driver is not None
     assert (driver.key, is_sure) == ("ximu3", True)
-    assert [str(one) for one in broken][0].startswith(f"The driver {fault} of the package strange 1.0 stopped with")
-    assert len(broken) == 1
+    (problem,) = map(str, broken)
+    assert problem.startswith(f"The driver {fault} of the package strange 1.0 stopped with")
 
 
 def voice_bytes(voice: Ximu3Voice) -> bytes:
@@ -239,7 +233,7 @@ def test_what_a_driver_refuses_itself_keeps_its_words_and_its_key_is_ours_to_giv
     asleep, false = (one.protocol for one in loaded())
     assert asleep is not None
     assert false is not None
-    with pytest.raises(SourceRefusedError, match="Asleep. Shake it") as refused:
+    with pytest.raises(SourceRefusedError, match=r"Asleep\. Shake it") as refused:
         asleep().greet(ScriptedChannel())
     assert not isinstance(refused.value, BrokenDriverError)
     info, _ = false().greet(ScriptedChannel())

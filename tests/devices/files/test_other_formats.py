@@ -11,7 +11,7 @@ from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingE
 from devices.files.other_formats import offered_formats
 from devices.files.refusal import FileRefusedError
 from devices.other_packages import IMPORTERS
-from tests.other_authors import install_plugin, site_in, write_package
+from tests.other_authors import install_plugin, site_of_others, write_package
 
 IS_LINUX: bool = sys.platform == "linux"
 READER = """
@@ -45,10 +45,8 @@ def source_of(is_it: str = BY_MARK, trial: str = ONE, first: str = "") -> str:
 
 
 @pytest.fixture
-def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    place = site_in(tmp_path)
-    monkeypatch.syspath_prepend(place)
-    return place
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    yield from site_of_others(tmp_path, monkeypatch)
 
 
 @pytest.fixture

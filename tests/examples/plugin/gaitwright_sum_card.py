@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-
 from gaitwright.core import ImuBlock, RateKind, SensorInfo
 from gaitwright.devices import FileFormat, FileRefusedError, ImportedSensor, ImportedTrial
 
