@@ -58,8 +58,8 @@ def offers(group: str, ours: Collection[str]) -> tuple[Offer, ...]:
 def _offer(entry: EntryPoint) -> Offer | None:
     """None where the package's own description is damaged."""
     with suppress(Exception):  # files of a stranger, read by the standard library
-        name, package, version = entry.name, entry.dist.name, entry.dist.version  # type: ignore[union-attr]  # suppressed
-        texts = (name, package, version)
-        if all(isinstance(text, str) and text.isprintable() and 0 < len(text) <= MOST_LETTERS for text in texts):
-            return Offer(name, package, version, entry)
+        if entry.dist is not None:
+            texts = entry.name, entry.dist.name, entry.dist.version
+            if all(isinstance(text, str) and text.isprintable() and 0 < len(text) <= MOST_LETTERS for text in texts):
+                return Offer(*texts, entry)
     return None

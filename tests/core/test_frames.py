@@ -1,4 +1,4 @@
-"""Tests for tables of results: their columns and axes, and what is said where a library is missing."""
+"""Tests for tables of results: their columns and axes, and the refusal where a library is missing."""
 
 import subprocess
 import sys

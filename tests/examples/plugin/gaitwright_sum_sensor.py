@@ -13,7 +13,7 @@ KEY, RATE_HZ, UNIT = "sum-sensor", 100.0, 0.01
 FRAME = struct.Struct("<BB6hBB")
 
 
-class SumFramer:
+class PackagedFramer:
     """Finds frames however the bytes are cut; what is no frame is skipped byte by byte."""
 
     def __init__(self) -> None:
@@ -37,13 +37,13 @@ class SumFramer:
         """The rest is half a frame."""
 
 
-class SumSensor:
+class PackagedSensor:
     """It sends from the moment it is switched on, and cannot be asked."""
 
     driver, version = KEY, "1"
 
     def framer(self, info: SourceInfo) -> Framer:
-        return SumFramer()
+        return PackagedFramer()
 
     def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         name = channel.serial or channel.place  # by which two of them are told apart
@@ -54,4 +54,4 @@ class SumSensor:
         return b""
 
 
-DRIVER = Driver(KEY, "Sum sensor", "By frames made for it. No hardware was at hand.", None, SumSensor, (115200,))
+DRIVER = Driver(KEY, "Sum sensor", "By frames made for it. No hardware was at hand.", None, PackagedSensor, (115200,))
