@@ -121,14 +121,14 @@ def why_not_recognised(path: Path) -> FileRefusedError:
 def format_of(path: Path, *, with_others: bool = False) -> str | None:
     """Give the format of a file or folder; None for none; raises OSError where it cannot be read.
 
-    `with_others`: what is none of ours is shown to those of other packages.
+    `with_others`: a file that is none of ours is shown to those of other packages. A folder is not: ours may lie in it.
     """
     head = b""
     if path.is_file():
         with path.open("rb") as file:
             head = as_utf8(file.read(HEAD_BYTES))
     ours = next((name for name, one in FORMATS.items() if one.is_it(path, head)), None)
-    if ours is not None or not with_others:
+    if ours is not None or not with_others or path.is_dir():
         return ours
     return next((name for name, one in other_formats().items() if one.is_it(path, head)), None)
 

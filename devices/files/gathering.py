@@ -28,12 +28,12 @@ def gather(
 
     What is refused is returned beside them; raises FileRefusedError where there are no files, or too many. `choices`:
     what somebody states of tables. `are_one`: files of one sensor each are one trial, whatever their names.
-    `with_others`: what is none of our formats is shown to those of other packages.
+    `with_others`: a file that is of none of our formats is shown to those of other packages.
     """
     refused: list[FileRefusedError] = []
     tables: list[str] = []
     found: dict[tuple[str, Path, str], list[str]] = {}
-    opened, mappings = without_mappings(_opened_up(paths, with_others))
+    opened, mappings = without_mappings(_opened_up(paths))
     for path in opened:
         try:
             is_stated = choices_for(path, choices) is not None
@@ -102,10 +102,10 @@ def _common(name: str, path: Path) -> str:
     return without_site(path.stem) if own.is_one_sensor else path.name
 
 
-def _opened_up(paths: Sequence[Path], with_others: bool) -> list[Path]:
+def _opened_up(paths: Sequence[Path]) -> list[Path]:
     opened: list[Path] = []
     for path in sorted(set(paths)):
-        if path.is_dir() and not (path / FILE_NAME).is_file() and format_of(path, with_others=with_others) is None:
+        if path.is_dir() and not (path / FILE_NAME).is_file() and format_of(path) is None:
             opened += sorted(inner for inner in path.iterdir() if not inner.name.startswith("."))
         else:
             opened.append(path)

@@ -331,7 +331,7 @@ class LimitedReading:
     def gather(
         self, paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, are_one: bool = False
     ) -> Gathered:
-        """As `gathering.gather` does; what is none of our formats is shown to those of other packages.
+        """As `gathering.gather` does; a file of none of our formats is shown to those of others.
 
         These see it in a reading of its own: what ours read stays where theirs ends the process.
         """

@@ -96,8 +96,9 @@ def test_a_file_of_ours_is_shown_to_no_other_package(
 ) -> None:
     write_package(site, "strange", IMPORTERS, {"greedy": source_of(is_it="return True")})
     stranger, ours = files
-    found = reading.gather([stranger, ours])
-    assert [(trial.format, len(trial.files)) for trial in found.trials] == [("csv", 1), ("greedy", 1)]
+    for chosen in ([stranger, ours], [ours.parent]):
+        found = reading.gather(chosen)
+        assert [(trial.format, len(trial.files)) for trial in found.trials] == [("csv", 1), ("greedy", 1)]
     assert reading.read_trial("", [ours], None).format == "csv"
     assert reading.read_trial("", [stranger], None).format == "greedy"
 
