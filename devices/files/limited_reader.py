@@ -47,6 +47,7 @@ DEADLINE_S = 60.0  # for any file, with the start of the process
 BYTES_A_SECOND = 5_000_000.0  # beyond that; a busy old machine reads four times as fast
 # of the environment: of Windows, of libraries that were put elsewhere, and of compiled modules
 KEPT = frozenset({"SYSTEMROOT", "PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "PYTHONPYCACHEPREFIX", "PYTHONUTF8"})
+IS_LINUX: bool = sys.platform == "linux"
 WAIT_S = 0.05  # between two looks at whether somebody still waits
 
 _log = logging.getLogger(__name__)
@@ -153,7 +154,7 @@ class LimitedReader:
             self._files_left = 0  # nobody waits for its answer
             raise
         finally:
-            if task.get("with_others") and sys.platform != "linux":
+            if task.get("with_others") and not IS_LINUX:
                 self._files_left = 0  # there no copy of the process loaded them, but it itself
             if self._files_left <= 0:
                 self._end()

@@ -249,3 +249,23 @@ def test_a_reader_without_end_of_memory_is_a_refusal(
     with pytest.raises(ReadingEndedError, match="takes more memory"):
         reading.read_trial("", [files[0]], None)
     assert reading.read_trial("", [files[1]], None).format == "csv"
+
+
+@pytest.mark.endurance
+def test_where_no_copy_of_the_process_is_made_the_next_file_has_a_new_one(
+    site: Path, files: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_package(site, "strange", IMPORTERS, {"strange": source_of()})
+    reader = LimitedReader()
+    reading = LimitedReading(reader, lambda: None)
+    reading.read_trial("csv", [files[1]], None)
+    first = reader.process
+    assert first is not None
+    reading.read_trial("", [files[0]], None)
+    assert reader.process is first
+    monkeypatch.setattr("devices.files.limited_reader.IS_LINUX", False)
+    reading.read_trial("", [files[0]], None)
+    assert reader.process is None
+    assert reading.read_trial("csv", [files[1]], None).format == "csv"
+    assert reader.process is not None
+    reader.close()
