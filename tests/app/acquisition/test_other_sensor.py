@@ -10,7 +10,7 @@ import pytest
 
 from app.acquisition.journal_stream import JournalStream
 from app.storage.journal.decoding import decode
-from devices.emulators.transports import Emulation, PseudoTerminal
+from devices.emulators.transports import Emulation, PseudoTerminal, Voice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.other_drivers import load_drivers
 from devices.other_packages import SENSORS
@@ -64,7 +64,10 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 @pytest.fixture
 def ports(tmp_path: Path) -> Iterator[list[PortInfo]]:
-    voices = {"sum": SumVoice(), "ximu3": Ximu3Voice("0000000A", lambda number: (number % 100, 0, 0, 0, 0, 1.0))}
+    voices: dict[str, Voice] = {
+        "sum": SumVoice(),
+        "ximu3": Ximu3Voice("0000000A", lambda number: (number % 100, 0, 0, 0, 0, 1.0)),
+    }
     emulations = [Emulation(voice, partial(PseudoTerminal, tmp_path / name)) for name, voice in voices.items()]
     yield [PortInfo(emulation.place, is_named=True) for emulation in emulations]
     for emulation in emulations:

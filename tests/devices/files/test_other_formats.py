@@ -257,15 +257,20 @@ def test_where_no_copy_of_the_process_is_made_the_next_file_has_a_new_one(
 ) -> None:
     write_package(site, "strange", IMPORTERS, {"strange": source_of()})
     reader = LimitedReader()
-    reading = LimitedReading(reader, lambda: None)
-    reading.read_trial("csv", [files[1]], None)
-    first = reader.process
-    assert first is not None
-    reading.read_trial("", [files[0]], None)
-    assert reader.process is first
-    monkeypatch.setattr("devices.files.limited_reader.IS_LINUX", False)
-    reading.read_trial("", [files[0]], None)
-    assert reader.process is None
-    assert reading.read_trial("csv", [files[1]], None).format == "csv"
-    assert reader.process is not None
+    reading, processes = LimitedReading(reader, lambda: None), []
+    for asked, file, is_linux in (
+        ("csv", files[1], True),
+        ("", files[0], True),
+        ("", files[0], False),
+        ("csv", files[1], False),
+        ("csv", files[1], False),
+    ):
+        monkeypatch.setattr("devices.files.limited_reader.IS_LINUX", is_linux)
+        reading.read_trial(asked, [file], None)
+        processes.append(reader.process)
     reader.close()
+    first, second, ended, fresh, last = processes
+    assert first is second
+    assert ended is None
+    assert fresh is last
+    assert fresh not in (None, first)
