@@ -8,6 +8,7 @@ import pytest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from app.home.home import Home
 from app.home.settings.drivers_card import DriversCard
 from app.system import allowed_drivers
 from app.system.allowed_drivers import DriverPackage, allow_drivers, driver_packages, other_drivers
@@ -119,3 +120,19 @@ def test_sensors_of_another_package_are_a_source_with_its_name(site: Path) -> No
     sources.look()
     sources.wait()
     assert "Stranger, 1 sensor" in [choice.name for choice in sources]
+
+
+def test_what_is_pressed_in_the_settings_is_kept_or_it_is_stated_why_not(
+    qtbot: QtBot, home: Home, site: Path, place: Path
+) -> None:
+    home.show_settings()
+    card = home.settings.page.drivers
+    assert [toggle_of(card, at).isChecked() for at in range(2)] == [False, False]
+    toggle_of(card, 1).click()
+    assert [one.is_allowed for one in driver_packages()] == [False, True]
+    place.unlink()
+    place.parent.rmdir()
+    place.parent.write_text("a file where the folder should be", encoding="utf-8")
+    toggle_of(card, 0).click()
+    assert "This setting was not saved" in home.banner.text
+    assert [toggle_of(card, at).isChecked() for at in range(2)] == [False, False]
