@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 from core.body import Joint, Side, Site
 from core.findings import Finding
@@ -16,6 +18,10 @@ from core.session import RecordingKind
 from core.signal.reception import Reception
 from core.timed.found import TimedTest
 from core.verdicts.model import Verdicts
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 
 class Method(StrEnum):
@@ -231,3 +237,64 @@ class Analysis:
             if any(found.free_motion_from == recording.name for found in calibration.joints.values()):
                 return calibration.joints
         return self.calibrations[-1].joints if self.calibrations else {}
+
+    def to_dataframe(self, table: str = "angles") -> "pd.DataFrame":
+        """One tidy table of all recordings, with the gaps and the status that the CSV files have.
+
+        Parameters
+        ----------
+        table
+            "angles": a row for each sample. "cycles": a row for each percent of the mean gait cycle. "strides": a row
+            for each stride and figure.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns `recording`, `side` (left, right, or empty for the pelvis), `time_s` (of a stride its start) or
+            `percent`, `quantity`, `value` and `sd` in the unit that the quantity's name ends with, `status`. An sd is
+            that of the angle, or that over `n` strides; NaN where none is known. Strides also have `used` and `reason`.
+            `status` is "read", "care", "no_zero" (the shape holds, the absolute angle does not), "range_only" (neither
+            does the direction), "withheld" (not reported), "not_measured", or empty. As in angles.csv, samples that are
+            not reported keep their value; in the other tables it is NaN.
+
+        Raises
+        ------
+        ImportError
+            pandas is not installed; the message states what to install.
+        ValueError
+            There is no such table.
+        """
+        return _frames().to_dataframe(self, table)
+
+    def to_xarray(self, recording: str, table: str = "angles") -> "xr.Dataset":
+        """Angles or cycles of one recording with named axes.
+
+        Parameters
+        ----------
+        recording
+            Its name.
+        table
+            "angles" or "cycles", as `to_dataframe` has them.
+
+        Returns
+        -------
+        xarray.Dataset
+            `value`, `sd` and `status` by `quantity`, `side`, and `time_s` or `percent`; of cycles also `n` by quantity
+            and side. What a side does not have is NaN with an empty status.
+
+        Raises
+        ------
+        ImportError
+            xarray is not installed; the message states what to install.
+        KeyError
+            There is no such recording.
+        ValueError
+            There is no such table, or it is that of strides, which have no common axis.
+        """
+        return _frames().to_xarray(self, recording, table)
+
+
+def _frames() -> ModuleType:
+    from core import frames  # it is made of these classes
+
+    return frames

@@ -3,7 +3,8 @@
 Nothing in this package knows what the numbers mean for a patient.
 
 Public is what `__all__` names: session folders, a simulated patient whose angles are known, what another maker's sensor
-has to say of itself, and samples that come now. These keep their meaning, every other name may change.
+has to say of itself, samples that come now, and what a package offers that brings a driver or a file format. These keep
+their meaning, every other name may change.
 """
 
 from typing import TYPE_CHECKING
@@ -22,6 +23,7 @@ __all__ = (
     "SensorProtocol", "Framer", "Received", "Channel", "Decoder", "DecodedSensor", "SourceInfo", "SensorDetails",
     "list_ports", "PortInfo", "SerialPort", "ByteSource", "CsvSerial", "Columns", "ReplaySource", "LiveSource",
     "host_time_ns", "SourceLostError", "SourceRefusedError",
+    "Driver", "FileFormat", "ImportedTrial", "ImportedSensor",
 )
 # fmt: on
 

@@ -6,12 +6,16 @@ The imports are for type checkers and editors; at run time `core.lazy_names` tak
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from devices.catalogue import Driver as Driver
     from devices.clocks.host_clock import host_time_ns as host_time_ns
     from devices.drivers.csv_serial import Columns as Columns
     from devices.drivers.csv_serial import CsvSerial as CsvSerial
+    from devices.files.file_format import FileFormat as FileFormat
     from devices.files.refusal import FileRefusedError as FileRefusedError
     from devices.files.session_folder import read_session as read_session
     from devices.files.session_folder import write_session as write_session
+    from devices.files.trial import ImportedSensor as ImportedSensor
+    from devices.files.trial import ImportedTrial as ImportedTrial
     from devices.live import LiveSource as LiveSource
     from devices.live import SensorDetails as SensorDetails
     from devices.live import SourceLostError as SourceLostError
@@ -35,22 +39,26 @@ if TYPE_CHECKING:
     from devices.transport.ports import list_ports as list_ports
 
 MODULES = {
+    "Driver": "devices.catalogue",
     "host_time_ns": "devices.clocks.host_clock",
     "Columns": "devices.drivers.csv_serial",
     "CsvSerial": "devices.drivers.csv_serial",
+    "FileFormat": "devices.files.file_format",
     "FileRefusedError": "devices.files.refusal",
     "read_session": "devices.files.session_folder",
     "write_session": "devices.files.session_folder",
+    "ImportedSensor": "devices.files.trial",
+    "ImportedTrial": "devices.files.trial",
     "LiveSource": "devices.live",
     "SensorDetails": "devices.live",
     "SourceLostError": "devices.live",
     "SourceRefusedError": "devices.live",
     "ReplaySource": "devices.simulation.replay",
     "FreeMotion": "devices.simulation.walker",
+    "simulate": "devices.simulation.walker",
     "Standing": "devices.simulation.walker",
     "Walk": "devices.simulation.walker",
     "WalkerSettings": "devices.simulation.walker",
-    "simulate": "devices.simulation.walker",
     "DecodedSensor": "devices.source",
     "SourceInfo": "devices.source",
     "ByteSource": "devices.stream",
@@ -59,7 +67,7 @@ MODULES = {
     "Received": "devices.stream",
     "SensorProtocol": "devices.stream",
     "Channel": "devices.transport.channels",
+    "list_ports": "devices.transport.ports",
     "PortInfo": "devices.transport.ports",
     "SerialPort": "devices.transport.ports",
-    "list_ports": "devices.transport.ports",
 }

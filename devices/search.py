@@ -4,7 +4,8 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -24,8 +25,9 @@ from devices.drivers.witmotion_ble import WitBleSource, is_wit, wit_name
 from devices.drivers.ximu3 import DRIVER as XIMU3
 from devices.drivers.ximu3 import Ximu3
 from devices.live import LiveSource, SourceLostError, SourceRefusedError
+from devices.other_drivers import BrokenDriverError, other_source
 from devices.source import SourceInfo
-from devices.stream import ByteSource
+from devices.stream import ByteSource, Framer
 from devices.transport.bluetooth import Radio
 from devices.transport.channels import Channel, TcpChannel, UdpChannel
 from devices.transport.ports import PortInfo, SerialPort, list_ports
@@ -68,13 +70,16 @@ class Passed:
 class SearchResult:
     """What one search found: sensors, ports that were passed over and why, ports that send lines of numbers.
 
-    `deaf`: why nothing was received by Bluetooth LE, where it should have been.
+    `deaf`: why nothing was received by Bluetooth LE, where it should have been. `others`: the drivers of other packages
+    that took part, `broken`: which of them failed meanwhile, each once.
     """
 
     sensors: tuple[FoundSensor, ...] = ()
     passed: tuple[Passed, ...] = ()
     lines: tuple[LinesAt, ...] = ()
     deaf: SourceRefusedError | None = None
+    others: tuple[Driver, ...] = ()
+    broken: tuple[BrokenDriverError, ...] = ()
 
     def of(self, driver: str) -> tuple[FoundSensor, ...]:
         return tuple(sensor for sensor in self.sensors if sensor.driver == driver)
@@ -85,6 +90,7 @@ def search(
     announced_at: int = ANNOUNCED_AT,
     columns: Mapping[str, Columns] = NO_COLUMNS,  # of lines of numbers, by the `key` of their port
     radio: Radio | None = None,  # None: no Bluetooth LE
+    others: Sequence[Driver] = (),  # of other packages, as `load_drivers` gives them
 ) -> SearchResult:
     """Listen to ports and the network for 1 to 4 s, each sensor named once; nothing is sent but to ports.
 
@@ -92,8 +98,9 @@ def search(
     """
     looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
     received: list[FoundSensor | Passed | LinesAt] = []
+    broken: list[BrokenDriverError] = []
     works = [
-        threading.Thread(target=lambda port=port: received.append(_at_port(port, columns)), daemon=True)
+        threading.Thread(target=lambda port=port: received.append(_at_port(port, columns, others, broken)), daemon=True)
         for port in looked_at
     ]
     on_network: list[FoundSensor] = []
@@ -114,7 +121,10 @@ def search(
         by_name.setdefault((one.driver, one.name), one)
     passed = sorted((one for one in received if isinstance(one, Passed)), key=lambda one: one.port.device)
     deaf = next((one for one in by_radio if isinstance(one, SourceRefusedError)), None)
-    return SearchResult(tuple(by_name.values()), tuple(passed), tuple(lines), deaf)
+    failed = {str(one): one for one in broken}
+    return SearchResult(
+        tuple(by_name.values()), tuple(passed), tuple(lines), deaf, tuple(others), tuple(failed.values())
+    )
 
 
 def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
@@ -135,23 +145,27 @@ def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
     return found
 
 
-def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Passed | LinesAt:
-    bauds = dict.fromkeys(baud for driver in DRIVERS if driver.protocol for baud in driver.bauds)
+def _at_port(
+    port: PortInfo, columns: Mapping[str, Columns], others: Sequence[Driver], broken: list[BrokenDriverError]
+) -> FoundSensor | Passed | LinesAt:
+    drivers = (*DRIVERS, *others)
+    bauds = dict.fromkeys(baud for driver in drivers if driver.protocol for baud in driver.bauds)
     for baud in bauds:
         channel = SerialPort(port, baud)
         try:
             channel.open()
-            driver, is_sure, stated = _recognised(channel, port)
+            driver, is_sure, stated = _recognised(channel, port, drivers, broken)
             if driver is None and (count := columns_in(stated)):
                 return LinesAt(port, baud, count, columns.get(port.key))
             if not is_sure:
-                driver = _answering(channel) or driver
+                driver = _answering(channel, drivers) or driver
             if driver is not None and driver.protocol is not None:
                 info, _ = driver.protocol().greet(channel)
                 return FoundSensor(
                     driver.key, info.sensors[0], port.device, _making(driver, port, baud), info.is_simulated
                 )
         except SourceRefusedError as refusal:
+            broken += [refusal] if isinstance(refusal, BrokenDriverError) else []
             return Passed(port, refusal)
         except SourceLostError:
             break
@@ -177,36 +191,56 @@ def _of_lines(lines: LinesAt) -> FoundSensor:
     return FoundSensor(CSV, name, port.device, make)
 
 
-def _recognised(channel: Channel, port: PortInfo) -> tuple[Driver | None, bool, bytes]:
-    """Whose messages these are, those damaged least; whether that is sure; and what was received."""
+def _recognised(
+    channel: Channel, port: PortInfo, drivers: Sequence[Driver], broken: list[BrokenDriverError]
+) -> tuple[Driver | None, bool, bytes]:
+    """Whose messages these are, those damaged least, ours first; whether that is sure; and what was received."""
     # messages without a sample among damaged ones are no proof: another sensor's packets may look like them
     stated = b""
-    candidates = [
-        (driver, driver.protocol().framer(SourceInfo(driver.key, "")))
-        for driver in DRIVERS
-        if driver.protocol is not None
-    ]
+    candidates: list[tuple[Driver, Framer]] = []
+    for driver in drivers:
+        if driver.protocol is not None:
+            with _kept_out(broken):
+                candidates.append((driver, driver.protocol().framer(SourceInfo(driver.key, ""))))
     until_s = time.monotonic() + LISTEN_S
     while time.monotonic() < until_s:
         data, now_s = channel.read(), time.monotonic()
         stated += data
-        for _, framer in candidates:
-            framer.feed(data, now_s)
+        understanding = []
+        for driver, framer in candidates:
+            with _kept_out(broken):
+                framer.feed(data, now_s)
+                understanding.append((driver, framer))
+        candidates = understanding
     # a sensor may send what it is not asked for yet; noise is understood by nobody
     understood = [
-        (bool(framer.received.rows) or not framer.received.damaged, whole - framer.received.damaged, driver)
+        (
+            bool(framer.received.rows) or not framer.received.damaged,
+            driver in DRIVERS,
+            whole - framer.received.damaged,
+            driver,
+        )
         for driver, framer in candidates
         if (whole := len(framer.received.rows) + framer.received.skipped) >= LEAST and whole > framer.received.damaged
     ]
     if understood:
-        is_sure, _, found = max(understood, key=lambda one: one[:2])
+        is_sure, _, _, found = max(understood, key=lambda one: one[:3])
         return found, is_sure, stated
-    return next((one for one in DRIVERS if one.hint and one.hint in port.description), None), False, stated
+    return next((one for one in drivers if one.hint and one.hint in port.description), None), False, stated
 
 
-def _answering(channel: SerialPort) -> Driver | None:
+@contextmanager
+def _kept_out(broken: list[BrokenDriverError]) -> Iterator[None]:
+    """What another package's driver does wrong leaves that driver out."""
+    try:
+        yield
+    except BrokenDriverError as problem:
+        broken.append(problem)
+
+
+def _answering(channel: SerialPort, drivers: Sequence[Driver]) -> Driver | None:
     """Who answers a question that only one maker's sensors understand."""
-    for driver in DRIVERS:
+    for driver in drivers:
         if not driver.knock or channel.baud not in driver.bauds:
             continue
         stated, until_s = b"", time.monotonic() + ANSWER_S
@@ -221,7 +255,8 @@ def _answering(channel: SerialPort) -> Driver | None:
 def _making(driver: Driver, port: PortInfo, baud: int) -> Callable[[], LiveSource]:
     def make() -> LiveSource:
         assert driver.protocol is not None
-        return ByteSource(driver.protocol(), SerialPort(port, baud))
+        of_whom = ByteSource if driver in DRIVERS else other_source
+        return of_whom(driver.protocol(), SerialPort(port, baud))
 
     return make
 

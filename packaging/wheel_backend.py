@@ -156,7 +156,7 @@ def _metadata(*, is_core: bool) -> dict[str, Any]:
     needs = {re.split(r"[<>=!~\[; ]", one)[0]: one for one in project["dependencies"]}
     files = [needs[name] for name in CORE_FILES]
     if is_core:
-        of_core = {"files": files, "imports": files + extras["imports"]}
+        of_core = {"files": files, "imports": files + extras["imports"], "frames": extras["frames"]}
         project = {k: v for k, v in project.items() if k != "scripts"}
         project |= {"name": CORE_NAME, "optional-dependencies": of_core}
         required = [needs[name] for name in CORE_NEEDS]

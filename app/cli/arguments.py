@@ -14,6 +14,7 @@ from uuid import UUID
 
 from core.parameters import BY_COLUMN
 from devices.files.refusal import one_line
+from devices.other_packages import IMPORTERS, offers
 
 METHODS = ("robust", "published")
 DEFAULT_TAU_S = 2.0
@@ -78,6 +79,14 @@ def one_of(words: Sequence[str]) -> Callable[[str], str]:
         return text
 
     return check
+
+
+def imported_format(text: str) -> str:
+    """A format of ours, or the name of one that another package offers; looked for where it is none of ours."""
+    if text not in IMPORTED:
+        others = [offer.name for offer in offers(IMPORTERS, IMPORTED)]
+        return one_of((*IMPORTED, *others))(text)
+    return text
 
 
 def positive(text: str) -> float:

@@ -8,17 +8,22 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from app.importing.untrusted_files import why_format_unusable
+from app.system.allowed_drivers import driver_packages, other_drivers
 from app.system.known_columns import known_columns
 from app.system.progress import Report
 from core.session import RecordingKind
 from devices.catalogue import DRIVERS
 from devices.emulators.patient import EmulatedPatient, EmulatedSensor, session_for
 from devices.emulators.transports import Emulation, PseudoTerminal
+from devices.files.other_formats import offered_formats
 from devices.files.trial import PROGRAMS, PROOFS
 from devices.live import SourceRefusedError
+from devices.other_drivers import OtherDrivers
 from devices.search import SearchResult, search, search_streams
 from devices.transport.bluetooth import own_radio
 from devices.transport.ports import MORE_PORTS
@@ -36,17 +41,16 @@ def run(args: argparse.Namespace, _report: Report) -> Iterator[str]:
 
 def list_devices(streams_in: str = "") -> Iterator[str]:
     """List received devices, silent ports and drivers' tests; takes 1 to 2 s. `streams_in` empty: no streams."""
-    found = search(columns=known_columns(), radio=own_radio())
+    others = other_drivers()
+    found = search(columns=known_columns(), radio=own_radio(), others=others.drivers)
     if streams_in:
         try:
             streams = search_streams(streams_in)
         except SourceRefusedError as refusal:
             yield str(refusal)
         else:
-            found = SearchResult(
-                found.sensors + streams.sensors, found.passed + streams.passed, found.lines, found.deaf
-            )
-    names = {driver.key: driver.name for driver in DRIVERS}
+            found = replace(found, sensors=found.sensors + streams.sensors, passed=found.passed + streams.passed)
+    names = {driver.key: driver.name for driver in (*DRIVERS, *others.drivers)}
     yield "Sensors found:" if found.sensors else "No sensor was found."
     for sensor in found.sensors:
         simulated = ", simulated" if sensor.is_simulated else ""
@@ -63,9 +67,35 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
     yield "How the drivers were tested:"
     for driver in DRIVERS:
         yield f"- {driver.name}: {driver.proof}"
+    yield from _drivers_of_others(others, found)
     yield "What the readers of files were held against:"
     for name, proof in PROOFS.items():
         yield f"- {PROGRAMS[name]}: {proof}"
+    yield from _formats_of_others()
+
+
+def _drivers_of_others(others: OtherDrivers, found: SearchResult) -> Iterator[str]:
+    """State what other packages bring for sensors, and why some of it is left out."""
+    packages = driver_packages()
+    if packages:
+        yield "Drivers of other packages:"
+    for package in packages:
+        state = "allowed" if package.is_allowed else "not allowed; this is set in the application"
+        yield f"- {package.name} {package.version}, {', '.join(package.drivers)}: {state}."
+    for one in others.left_out:
+        yield f"- {one.offer.name} of {one.offer.package} was left out: {one.why}."
+    yield from (f"- {problem}" for problem in found.broken)
+
+
+def _formats_of_others() -> Iterator[str]:
+    """State what other packages bring for files, each tried in the process that would read with it."""
+    offered = offered_formats()
+    if offered:
+        yield "File formats of other packages:"
+    for offer in offered:
+        why = why_format_unusable(offer)
+        state = f"left out: {why}" if why else "can be read"
+        yield f"- {offer.name} of {offer.package} {offer.version}: {state}."
 
 
 def emulate(

@@ -33,6 +33,7 @@ from app.cli.arguments import (
     TYPED,
     WHO,
     LibrarySession,
+    imported_format,
     limit_of,
     line_number,
     one_of,
@@ -230,9 +231,9 @@ def _add_import(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--as",
         dest="format",
-        type=one_of(IMPORTED),
+        type=imported_format,
         metavar="FORMAT",
-        help=f"{', '.join(IMPORTED)}; without it, recognised by the content",
+        help=f"{', '.join(IMPORTED)}, or one that another package brings; without it, recognised by the content",
     )
     parser.add_argument(
         "--map",

@@ -25,12 +25,13 @@ import numpy as np
 from app.exports.figures import SIMULATED, in_ascii, reported_abduction_deg, reported_deg, status_in_ascii
 from app.exports.parts import part_paths
 from app.summary.events import events_of
-from app.summary.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
+from app.summary.status import why_status
 from app.wording.translation import PURPOSE, tr
 from core.body import Joint, JointKind, Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, IntArray
 from core.signal.tracks import nominal_step_s
+from core.verdicts.status import NO_ZERO, WITH_HEIGHT, joint_status
 
 POINTS = {
     Joint.LEFT_KNEE: "LKneeAngles",

@@ -7,11 +7,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
-from app.summary.status import NOT_REPORTED, is_slipped, joint_status
 from core.body import LEG_JOINTS, Joint, Side
 from core.gait.phases import PHASES
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray
+from core.verdicts.status import NOT_REPORTED, is_slipped, joint_status
 
 ROWS_PER_BLOCK = 100_000  # some 20 MB of table: ten hours pass through without ever being in memory as text
 DECIMALS = 5

@@ -10,7 +10,7 @@ import numpy as np
 
 from app.exports.csv_report import DECIMALS
 from app.summary.averages import Average, averages_of
-from app.summary.status import is_slipped, joint_status, why, why_status
+from app.summary.status import why, why_status
 from app.system.tables import finite
 from core import parameters
 from core.body import Joint, Side
@@ -19,6 +19,7 @@ from core.samples import FloatArray
 from core.session import RecordingKind
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
+from core.verdicts.status import is_slipped, joint_status
 
 SIMULATED = "SIMULATED: nobody was measured."
 DECIMALS_OF = {"°": 1, "%": 1, "s": 3, "m": 3, "m/s": 3, "steps/min": 1, "mm": 1}  # below the error of each figure

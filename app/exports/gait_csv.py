@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from app.summary.events import events_of
-from app.summary.status import joint_status
 from app.system.tables import figure_cell, write_table
 from core.body import Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import POINTS
@@ -28,6 +27,7 @@ from core.verdicts.quantities import (
     peak_percent,
     values_of,
 )
+from core.verdicts.status import joint_status
 
 TIMES = ("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s")
 PEAK_TIMES = tuple(f"{window.name}_percent" for window in WINDOWS.values())

@@ -18,12 +18,13 @@ import numpy as np
 
 from app.exports.figures import SIMULATED, as_in_csv_deg, reported_abduction_deg, reported_deg, status_in_ascii
 from app.exports.parts import part_paths
-from app.summary.status import WITH_HEIGHT, joint_status, why_status
+from app.summary.status import why_status
 from app.wording.translation import PURPOSE, tr
 from core.body import Joint
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.signal.tracks import nominal_step_s
+from core.verdicts.status import WITH_HEIGHT, joint_status
 
 COORDINATES = {
     Joint.RIGHT_KNEE: "knee_angle_r",

@@ -13,13 +13,13 @@ import numpy as np
 from app.exports.figures import SIMULATED
 from app.exports.opensim_motion import MotionPart, known_parts
 from app.exports.parts import part_paths
-from app.summary.status import NO_ZERO, WITH_HEIGHT, joint_status
 from app.wording.translation import PURPOSE, tr
 from core.body import Site
 from core.orientations import SensorOrientations, orientations_of
 from core.results import Analysis
 from core.samples import FloatArray
 from core.session import Session
+from core.verdicts.status import NO_ZERO, WITH_HEIGHT, joint_status
 
 IMUS = {
     Site.PELVIS: "pelvis_imu",

@@ -32,7 +32,7 @@ from app.summary.comparison import Comparison, Contrast, first_and_second
 from app.summary.condition_figures import condition_figures
 from app.summary.conditions import conditions_of
 from app.summary.differences import HEADER, difference_cells, legs_table, rows_along_chain
-from app.summary.status import NO_ZERO, RANGE_ONLY, all_that_is_stated, why
+from app.summary.status import all_that_is_stated, why
 from app.system.tables import finite, typed_cell
 from app.wording.alignment import since_in_words
 from app.wording.findings import sentence
@@ -44,6 +44,7 @@ from core.results import Analysis, RecordingAnalysis
 from core.session import Session
 from core.verdicts.model import Assessment, Verdict, together
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
+from core.verdicts.status import NO_ZERO, RANGE_ONLY
 
 
 class EmptyCell(NamedTuple):

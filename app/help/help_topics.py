@@ -39,6 +39,7 @@ class Topic(StrEnum):
     ADMINISTRATION = "administration"
     STATIONS = "stations"
     COMMAND_LINE = "command-line"
+    OTHER_PACKAGES = "other-packages"
     MESSAGES = "messages"
     KEYS = "keys"
     ACCESSIBILITY = "accessibility"
@@ -101,6 +102,7 @@ def topic_title(topic: Topic) -> str:
         Topic.ADMINISTRATION: tr("For administrators"),
         Topic.STATIONS: tr("Several workstations"),
         Topic.COMMAND_LINE: tr("Command line"),
+        Topic.OTHER_PACKAGES: tr("Other packages and scripts"),
         Topic.MESSAGES: tr("Messages explained"),
         Topic.KEYS: tr("Keys"),
         Topic.ACCESSIBILITY: tr("Accessibility"),

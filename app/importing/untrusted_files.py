@@ -14,6 +14,7 @@ from devices.files.references.trial import ReferenceFile
 from devices.files.session_folder import read_session, write_session
 from devices.files.table_choices import NOTHING_STATED, StatedChoices, TableChoices, TablePreview
 from devices.files.trial import Gathered, ImportedTrial
+from devices.other_packages import Offer
 
 
 def read_foreign_session(folder: Path, waiting: Waiting) -> Session:
@@ -63,6 +64,11 @@ def gather_foreign(
 def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
     """Query as `devices.files.parquet_questions.answer`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), _nobody_waits).ask_parquet(path, sql, is_typed)
+
+
+def why_format_unusable(offer: Offer) -> str:
+    """Why a format that another package offers cannot be used, tried within limits; empty where it can."""
+    return LimitedReading(the_reader(), _nobody_waits).why_unusable(offer)
 
 
 @cache

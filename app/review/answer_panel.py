@@ -7,7 +7,7 @@ from app.summary.headline import headline_of
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import in_words, signed
 from app.summary.request import AnalysedVisit
-from app.summary.status import WITH_HEIGHT, joint_status, why
+from app.summary.status import why
 from app.summary.walk_figures import MAY_BE_MIRRORED, doubt_in, reason_in_words, verdict_of
 from app.summary.what_differs import what_differs
 from app.wording.body import name_of, side_name
@@ -16,6 +16,7 @@ from app.wording.verdicts import verdict_word
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.session import RecordingKind, Session
+from core.verdicts.status import WITH_HEIGHT, joint_status
 
 MOST_DIFFERENCES = 5
 KEY = later(

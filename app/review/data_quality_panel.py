@@ -12,12 +12,13 @@ from itertools import groupby
 
 import numpy as np
 
-from app.summary.status import NO_ZERO, WITH_HEIGHT, all_that_is_stated, is_slipped, joint_status, why
+from app.summary.status import all_that_is_stated, why
 from app.wording.translation import PURPOSE
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import BoolArray, FloatArray
 from core.session import RecordingKind
+from core.verdicts.status import NO_ZERO, WITH_HEIGHT, is_slipped, joint_status
 
 
 class Place(StrEnum):

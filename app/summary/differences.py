@@ -13,7 +13,6 @@ from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast, Reservation, compare_legs
 from app.summary.conditions import Part, conditions_of
 from app.summary.measures import MEASURES, Measure
-from app.summary.status import status_of
 from app.summary.visits import by_condition
 from app.system.tables import figure_cell, typed_cell, write_table
 from core.body import Joint, Side
@@ -27,6 +26,7 @@ from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict, together
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
 from core.verdicts.quantities import OF_BOTH, assessment_of_both
+from core.verdicts.status import status_of
 
 DIFFERENCES = "differences.csv"
 COMPARED_CYCLES = "compared_cycles.csv"

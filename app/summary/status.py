@@ -1,20 +1,14 @@
-"""What may be stated, as the files have it: a word per joint and per sample, and the verdicts with reasons."""
+"""What may be stated, and why: the verdicts of an analysis with the sentences of their gates."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numpy as np
-
 from app.wording.verdicts import gate_sentence
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import BoolArray
 from core.session import RecordingKind
-from core.verdicts.model import Assessment, JointVerdicts, Verdict, together
-
-READ, CARE, NOT_REPORTED = str(Verdict.READ), str(Verdict.CARE), str(Verdict.NOT_REPORTED)
-RANGE_ONLY, NO_ZERO = "range_only", "no_zero"
-WITH_HEIGHT = (READ, CARE)
+from core.verdicts.model import Assessment, Verdict, together
+from core.verdicts.status import NO_ZERO, NOT_REPORTED, RANGE_ONLY, joint_status
 
 
 class Stated(NamedTuple):
@@ -26,34 +20,12 @@ class Stated(NamedTuple):
     assessment: Assessment
 
 
-def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
-    """What holds of a joint's angle in one recording, as `status_of` has it."""
-    return status_of(recording.verdicts.joint(joint))
-
-
-def status_of(found: JointVerdicts) -> str:
-    """Give a joint's status; empty: not measured, `RANGE_ONLY`: sign unknown, `NO_ZERO`: offset meaningless."""
-    if found.shape.verdict is Verdict.NOT_MEASURED:
-        return ""
-    if not found.shape.is_reported:
-        return NOT_REPORTED
-    if not found.sign.is_reported:
-        return RANGE_ONLY
-    return str(together((found.shape, found.height)).verdict) if found.height.is_reported else NO_ZERO
-
-
 def why_status(recording: RecordingAnalysis, joint: Joint) -> str:
     """Why a joint's status is no better, in sentences, the gravest first; empty where it can be read."""
     found = recording.verdicts.joint(joint)
     status = joint_status(recording, joint)
     decisive = {RANGE_ONLY: found.sign, NO_ZERO: found.height, NOT_REPORTED: found.shape}
     return why(decisive.get(status, together((found.shape, found.height))))
-
-
-def is_slipped(recording: RecordingAnalysis, side: Side, rows: slice = slice(None)) -> BoolArray:
-    """Which of some samples come after a strap of this side slipped: there no angle of it holds."""
-    from_s = recording.slipped_from_s.get(side, np.inf)
-    return np.asarray(recording.time_s[rows] >= from_s, dtype=bool)
 
 
 def why(found: Assessment) -> str:

@@ -17,6 +17,7 @@ from devices.files.answers import Array, Details, details_of, details_of_documen
 from devices.files.bids_tables import folders_of_scans, tables_beside
 from devices.files.child import (
     GATHER,
+    IMPORTER,
     MEMORY,
     PREVIEW,
     QUESTION,
@@ -29,6 +30,7 @@ from devices.files.child import (
     UNFORESEEN,
 )
 from devices.files.limits import forbid_reading, limit_processor_time
+from devices.files.other_formats import offered_formats, usable_format
 from devices.files.references.reading import read_reference
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import IN_THIS_PROCESS
@@ -36,6 +38,7 @@ from devices.files.site_files import read_site
 from devices.files.system_calls import refuse_system_calls
 from devices.files.table_choices import TableChoices
 from devices.files.trial import BESIDE_INERTIAL, registers_beside
+from devices.other_packages import BrokenOfferError
 
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 IS_LINUX: bool = sys.platform == "linux"
@@ -102,6 +105,8 @@ def _load_for(task: str) -> None:
 
 def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
     """The files that a task may open, and the folders whose names it may list."""
+    if asked["task"] == IMPORTER:
+        return [], []
     if asked["task"] not in (TRIAL, GATHER):
         return [Path(asked["path"])], []
     named = list(map(Path, asked["files"]))
@@ -147,6 +152,8 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         if not IS_LINUX:
             _limit_reference(path)
         return details_of(read_reference(path), arrays)
+    if task == IMPORTER:
+        return _why_unusable(asked["name"], asked["package"])
     if task == PREVIEW:
         from devices.files.table_preview import preview_of  # as below
 
@@ -156,10 +163,22 @@ def _read(asked: Details, arrays: list[Array]) -> object:
     if task == GATHER:
         from devices.files.gathering import gather  # as below
 
-        return details_of(gather(files, choices, are_one=asked["are_one"]), arrays)
+        return details_of(gather(files, choices, are_one=asked["are_one"], with_others=asked["with_others"]), arrays)
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
     return details_of(read_trial(asked["format"], files, asked["rate_hz"], choices, splits=asked["splits"]), arrays)
+
+
+def _why_unusable(name: str, package: str) -> str:
+    """Why a format of another package cannot be used; empty where it can."""
+    for offer in offered_formats():
+        if (offer.name, offer.package) == (name, package):
+            try:
+                usable_format(offer)
+            except BrokenOfferError as problem:
+                return str(problem)
+            return ""
+    return "it cannot be found by the reading process"
 
 
 def _limit_reference(path: Path) -> None:

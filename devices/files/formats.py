@@ -1,8 +1,8 @@
 """The programs whose files can be read, each recognised by what is in a file, never by its name."""
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +11,14 @@ from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
 from devices.files.clock_repair import RESTARTED, restart_refusal, restarts_continued
 from devices.files.csv_tables import choices_for, csv_recording, csv_trial, is_csv, why_no_csv
+from devices.files.file_format import FileFormat
 from devices.files.matlab_tables import matlab_trial
 from devices.files.matlab_variables import is_matlab
 from devices.files.movella_dot import dot_recording, is_movella_dot, movella_dot_trial
 from devices.files.mti_streams import is_mti_stream, mti_trial
 from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
+from devices.files.other_formats import other_formats
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.sensor_mapping import read_mapping, with_names, without_mappings
@@ -31,21 +33,6 @@ from devices.files.ximu_files import is_ximu, ximu_recording, ximu_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
 
 HEAD_BYTES = 65_536  # heads of many sensors are long
-
-
-@dataclass(frozen=True, slots=True)
-class FileFormat:
-    """`is_it`: whether a file, whose first bytes are given, is of this format; a folder has none.
-
-    `trial`: what the files of one trial hold, with the samples per second where they give none. `is_one_sensor`: a
-    file holds one sensor, and a trial has several; else it holds all of them. `trial_name`: what the names of all files
-    of a trial have in common, where the format itself states how they are called.
-    """
-
-    is_it: Callable[[Path, bytes], bool]
-    trial: Callable[[Sequence[Path], float | None], ImportedTrial]
-    is_one_sensor: bool = False
-    trial_name: Callable[[Path], str] | None = None
 
 
 FORMATS: Mapping[str, FileFormat] = {
@@ -97,7 +84,7 @@ def read_trial(
     if any(choices_for(path, choices) is not None for path in every):
         found = csv_trial(every, rate_hz, choices)
     else:
-        found = FORMATS[name or recognised(every)].trial(every, rate_hz)
+        found = known_format(name or recognised(every)).trial(every, rate_hz)
     for path in mappings:
         found = with_names(found, read_mapping(path))
     return replace(found, is_simulated=found.is_simulated or any(map(_is_of_simulated_session, every)))
@@ -129,12 +116,22 @@ def _with_its_restarts(sensor: ImportedSensor) -> ImportedSensor:
     return replace(sensor, findings=others, restarts=tuple(restarts))
 
 
+def known_format(name: str) -> FileFormat:
+    """Give the format of this name, ours or another package's; raises FileRefusedError where there is none."""
+    found = FORMATS.get(name) or other_formats().get(name)
+    if found is None:
+        raise FileRefusedError(
+            name, "the package that reads this format cannot be used", "gaitwright devices states the reason"
+        )
+    return found
+
+
 def recognised(files: Sequence[Path]) -> str:
     """Give the format of one trial's files; raises FileRefusedError for an unknown or a mixed one, or OSError."""
     found: dict[str, Path] = {}
     for path in files:
         _refuse_missing(path)
-        name = format_of(path)
+        name = format_of(path, with_others=True)
         if name is None:
             raise why_not_recognised(path)
         found.setdefault(name, path)
@@ -162,13 +159,19 @@ def why_not_recognised(path: Path) -> FileRefusedError:
     )
 
 
-def format_of(path: Path) -> str | None:
-    """Give the format of a file or folder; None for none; raises OSError where it cannot be read."""
+def format_of(path: Path, *, with_others: bool = False) -> str | None:
+    """Give the format of a file or folder; None for none; raises OSError where it cannot be read.
+
+    `with_others`: a file that is none of ours is shown to those of other packages. A folder is not: ours may lie in it.
+    """
     head = b""
     if path.is_file():
         with path.open("rb") as file:
             head = as_utf8(file.read(HEAD_BYTES))
-    return next((name for name, one in FORMATS.items() if one.is_it(path, head)), None)
+    ours = next((name for name, one in FORMATS.items() if one.is_it(path, head)), None)
+    if ours is not None or not with_others or path.is_dir():
+        return ours
+    return next((name for name, one in other_formats().items() if one.is_it(path, head)), None)
 
 
 def _is_of_simulated_session(path: Path) -> bool:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from devices.files.csv_tables import FORMAT as CSV
 from devices.files.csv_tables import choices_for
-from devices.files.formats import FORMATS, format_of, why_not_recognised
+from devices.files.formats import format_of, known_format, why_not_recognised
 from devices.files.refusal import FileRefusedError
 from devices.files.sensor_mapping import read_mapping, without_mappings
 from devices.files.session_toml import FILE_NAME
@@ -17,11 +17,18 @@ from devices.files.trial import SESSION, FilesOfTrial, Gathered
 MOST_FILES = 500  # what is dragged may be a whole disk
 
 
-def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, are_one: bool = False) -> Gathered:
+def gather(
+    paths: Sequence[Path],
+    choices: StatedChoices = NOTHING_STATED,
+    *,
+    are_one: bool = False,
+    with_others: bool = False,
+) -> Gathered:
     """Group files to trials by format, folder and common name, in the order of names; a folder of no format is opened.
 
     What is refused is returned beside them; raises FileRefusedError where there are no files, or too many. `choices`:
     what somebody states of tables. `are_one`: files of one sensor each are one trial, whatever their names.
+    `with_others`: a file that is of none of our formats is shown to those of other packages.
     """
     refused: list[FileRefusedError] = []
     tables: list[str] = []
@@ -30,7 +37,7 @@ def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, ar
     for path in opened:
         try:
             is_stated = choices_for(path, choices) is not None
-            name = CSV if is_stated else SESSION if (path / FILE_NAME).is_file() else format_of(path)
+            name = CSV if is_stated else _format(path, with_others)
         except OSError as problem:
             why = problem.strerror or type(problem).__name__
             refused.append(
@@ -43,7 +50,7 @@ def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, ar
             refused.append(why_not_recognised(path))
             tables += [str(path)] if path.is_file() and fingerprint_of(path) else []
             continue
-        is_merged = are_one and name != SESSION and FORMATS[name].is_one_sensor
+        is_merged = are_one and name != SESSION and known_format(name).is_one_sensor
         common = path.parent.name if is_merged else _common(name, path)
         found.setdefault((name, path.parent, common), []).append(str(path))
     if not found and mappings and not refused:
@@ -63,16 +70,20 @@ def gather(paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, ar
             name,
             (common if len(files) > 1 else Path(files[0]).stem) or folder.name,
             (*files, *(str(path) for path in mappings if path.parent == folder and _is_named_by(path, name, files))),
-            name != SESSION and FORMATS[name].is_one_sensor,
+            name != SESSION and known_format(name).is_one_sensor,
         )
         for (name, folder, common), files in found.items()
     )
     return Gathered(trials, tuple(refused), tuple(tables))
 
 
+def _format(path: Path, with_others: bool) -> str | None:
+    return SESSION if (path / FILE_NAME).is_file() else format_of(path, with_others=with_others)
+
+
 def _is_named_by(mapping: Path, name: str, files: Sequence[str]) -> bool:
     """Whether a mapping may name sensors of these files: one of each is named by its id, which its file's name has."""
-    if name == SESSION or not FORMATS[name].is_one_sensor:
+    if name == SESSION or not known_format(name).is_one_sensor:
         return name != SESSION
     try:
         ids = read_mapping(mapping)
@@ -85,7 +96,7 @@ def _common(name: str, path: Path) -> str:
     """What the names of the files of one trial have in common."""
     if name == SESSION:
         return path.name
-    own = FORMATS[name]
+    own = known_format(name)
     if own.trial_name is not None:
         return own.trial_name(path)
     return without_site(path.stem) if own.is_one_sensor else path.name
@@ -94,7 +105,7 @@ def _common(name: str, path: Path) -> str:
 def _opened_up(paths: Sequence[Path]) -> list[Path]:
     opened: list[Path] = []
     for path in sorted(set(paths)):
-        if path.is_dir() and not (path / FILE_NAME).is_file() and not _is_known(path):
+        if path.is_dir() and not (path / FILE_NAME).is_file() and format_of(path) is None:
             opened += sorted(inner for inner in path.iterdir() if not inner.name.startswith("."))
         else:
             opened.append(path)
@@ -106,7 +117,3 @@ def _opened_up(paths: Sequence[Path]) -> list[Path]:
                 count=MOST_FILES,
             )
     return opened
-
-
-def _is_known(folder: Path) -> bool:
-    return any(one.is_it(folder, b"") for one in FORMATS.values())

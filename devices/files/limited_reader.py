@@ -29,13 +29,15 @@ from devices.files.answers import (
     send,
     value_from,
 )
+from devices.files.other_formats import offered_formats
 from devices.files.references.answers import reference_from
 from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
 from devices.files.table_choices import NOTHING_STATED, StatedChoices, TableChoices, TablePreview
-from devices.files.trial import Gathered, ImportedTrial
+from devices.files.trial import PROGRAMS, Gathered, ImportedTrial
+from devices.other_packages import Offer
 
 FILES_EACH = 500
 MEMORY_BYTES = 4 * 1024**3  # half a gigabyte of text takes 1.9, most of it only reserved, the libraries 0.4 of them
@@ -45,6 +47,7 @@ DEADLINE_S = 60.0  # for any file, with the start of the process
 BYTES_A_SECOND = 5_000_000.0  # beyond that; a busy old machine reads four times as fast
 # of the environment: of Windows, of libraries that were put elsewhere, and of compiled modules
 KEPT = frozenset({"SYSTEMROOT", "PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "PYTHONPYCACHEPREFIX", "PYTHONUTF8"})
+IS_LINUX: bool = sys.platform == "linux"
 WAIT_S = 0.05  # between two looks at whether somebody still waits
 
 _log = logging.getLogger(__name__)
@@ -151,6 +154,8 @@ class LimitedReader:
             self._files_left = 0  # nobody waits for its answer
             raise
         finally:
+            if task.get("with_others") and not IS_LINUX:
+                self._files_left = 0  # there no copy of the process loaded them, but it itself
             if self._files_left <= 0:
                 self._end()
             self._lock.release()
@@ -304,6 +309,7 @@ class LimitedReading:
             "rate_hz": rate_hz,
             "splits": splits,
             "choices": details_of(choices, []),
+            "with_others": format_name not in PROGRAMS,
         }
         where = ", ".join(path.name for path in files)
         return self._reader.ask(task, files, where, partial(value_from, ImportedTrial), self.waiting)
@@ -329,12 +335,31 @@ class LimitedReading:
     def gather(
         self, paths: Sequence[Path], choices: StatedChoices = NOTHING_STATED, *, are_one: bool = False
     ) -> Gathered:
-        """As `gathering.gather` does."""
+        """As `gathering.gather` does; a file of none of our formats is shown to those of others.
+
+        These see it in a reading of its own: what ours read stays where theirs ends the process.
+        """
+        found = self._gather(paths, choices, are_one=are_one, with_others=False)
+        if found.refused and offered_formats():
+            with contextlib.suppress(ReadingEndedError):
+                return self._gather(paths, choices, are_one=are_one, with_others=True)
+        return found
+
+    def why_unusable(self, offer: Offer) -> str:
+        """Why a format of another package cannot be used; empty where it can."""
+        task = {"task": child.IMPORTER, "name": offer.name, "package": offer.package, "with_others": True}
+        try:
+            return self._reader.ask(task, (), offer.name, partial(value_from, str), self.waiting)
+        except ReadingEndedError as ended:
+            return f"it ended the process that loaded it ({ended.cause})"
+
+    def _gather(self, paths: Sequence[Path], choices: StatedChoices, *, are_one: bool, with_others: bool) -> Gathered:
         task = {
             "task": child.GATHER,
             "files": [str(path) for path in paths],
             "choices": details_of(choices, []),
             "are_one": are_one,
+            "with_others": with_others,
         }
         return self._reader.ask(task, (), paths[0].name, partial(value_from, Gathered), self.waiting)
 

@@ -50,6 +50,8 @@ def test_a_start_installs_what_was_tested_and_nothing_for_tests() -> None:
         "pytest",
         "hypothesis",
         "pandas",
+        "xarray",
+        "matplotlib",
         "mypy",
         "pgserver",
         "moto",
@@ -64,7 +66,7 @@ def test_the_bundle_has_every_extra_and_what_builds_it_and_nothing_for_tests() -
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
     required = project["dependencies"] + [
-        one for name, asked in extras.items() if name not in ("dev", "opensim") for one in asked
+        one for name, asked in extras.items() if name not in ("dev", "frames", "opensim") for one in asked
     ]
     names = {re.split(r"[^\w.-]", requirement)[0].lower() for requirement in required}
     packed = pins("bundle.lock").keys()

@@ -5,6 +5,7 @@ Nothing is fetched: the wheels are installed without what they need, which is ta
 
 import ast
 import importlib
+import re
 import subprocess
 import sys
 import sysconfig
@@ -13,6 +14,8 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+from tests.other_authors import install_plugin
 
 ROOT = Path(__file__).resolve().parents[2]
 STRANGERS = ("app", "core", "devices")
@@ -150,6 +153,44 @@ print(len(analysis.recordings), *(name for name in core.__all__ if getattr(core,
         Path(sys.executable), "-S", "-c", program, str(tmp_path / "core"), str(libraries), cwd=tmp_path
     )  # without -S what this environment holds would be found
     assert stated.split() == ["2"]
+
+
+@pytest.mark.endurance
+def test_tables_are_an_extra_of_both_and_a_missing_library_is_named(
+    wheels: dict[str, Path], environment: Path, tmp_path: Path
+) -> None:
+    for path in wheels.values():
+        with zipfile.ZipFile(path) as archive:
+            (about,) = (name for name in archive.namelist() if name.endswith("/METADATA"))
+            stated = archive.read(about).decode()
+        assert re.search(r"Requires-Dist: pandas.*; extra == [\"']frames", stated)
+    program = (
+        "import sys; sys.modules['pandas'] = None\n"
+        "from gaitwright.core import Analysis, Method\n"
+        "try: Analysis(Method.ROBUST, False, (), ()).to_dataframe()\n"
+        "except ImportError as missing: print(missing)"
+    )
+    assert run(environment, "-c", program, cwd=tmp_path).startswith("pandas is not installed.")
+
+
+@pytest.mark.endurance
+def test_a_package_of_others_brings_its_driver_and_its_format(environment: Path, tmp_path: Path) -> None:
+    (site,) = environment.parents[1].glob("**/site-packages")
+    install_plugin(site, tmp_path)
+    (tmp_path / "shank.bin").write_bytes(b"SUM1" + bytes(16) + bytes([1, *bytes(15)]))
+    program = """
+import sys
+from pathlib import Path
+from gaitwright.devices.files.limited_reader import LimitedReader, LimitedReading
+from gaitwright.devices.other_drivers import load_drivers
+print(*(driver.key for driver in load_drivers({("gaitwright-sum-sensor", "1.0")}).drivers))
+reader = LimitedReader()
+trial = LimitedReading(reader, lambda: None).read_trial("", [Path(sys.argv[1])], None)
+reader.close()
+print(trial.format, len(trial.sensors[0].block))
+"""
+    stated = run(environment, "-c", program, str(tmp_path / "shank.bin"), cwd=tmp_path)
+    assert stated.split() == ["sum-sensor", "sum-card", "2"]
 
 
 @pytest.mark.endurance

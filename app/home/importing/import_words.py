@@ -142,4 +142,4 @@ def program_name(key: str) -> str:
         "parquet": tr("any program (Parquet, named columns)"),
         "csv": tr("any program (CSV, named columns)"),
     }
-    return words.get(key, PROGRAMS[key])
+    return words.get(key) or PROGRAMS.get(key, key)  # a format of another package has its name alone

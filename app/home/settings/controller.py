@@ -23,6 +23,7 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.opened import slots_of
 from app.storage.operators import CLINIC
 from app.storage.stored import KEPT_DELETED, Operator, Role
+from app.system.allowed_drivers import allow_drivers, driver_packages
 from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.current import current_theme
@@ -61,6 +62,7 @@ class SettingsController(QObject):
         self._error_report.reported.connect(self.reported)
         self._error_report.written.connect(self.page.show_error_report)
         self._show_screen()
+        self.page.drivers.show_packages(driver_packages())
         self._connect()
 
     def show_library(self, state: OpenedState) -> None:
@@ -101,6 +103,7 @@ class SettingsController(QObject):
         """Show what may have changed since the settings were looked at last."""
         self.read_deleted()
         self._clinic.read_waiting()
+        self.page.drivers.show_packages(driver_packages())
 
     def _on_moved(self, state: OpenedState) -> None:
         self.show_library(state)
@@ -140,6 +143,7 @@ class SettingsController(QObject):
         page.operators.removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)
         page.restore_requested.connect(self._on_restore_requested)
+        page.drivers.allowed.connect(self._on_drivers_allowed)
         self._settings.changed.connect(self._show_screen)
 
     def _show_screen(self) -> None:
@@ -174,6 +178,14 @@ class SettingsController(QObject):
 
     def _on_prompts_chosen(self, has_prompts: bool) -> None:
         self._settings.has_prompts = has_prompts
+
+    def _on_drivers_allowed(self, package: str, version: str, is_allowed: bool) -> None:
+        try:
+            allow_drivers(package, version, is_allowed=is_allowed)
+        except OSError as problem:
+            what = tr("This setting was not saved ({why}).").format(why=problem.strerror)
+            self.reported.emit(what, tr("Free some space on the disk, then set it again."))
+            self.page.drivers.show_packages(driver_packages())
 
     def _on_passphrase_requested(self, old: str, new: str) -> None:
         def change(opened: "OpenedLibrary") -> None:

@@ -8,6 +8,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.settings.clinic_cards import MoreStationsCard, StationCard
+from app.home.settings.drivers_card import DriversCard
 from app.home.settings.operators_card import OperatorsCard
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
@@ -71,6 +72,8 @@ class SettingsPage(TallPage):
         self._build_clinic()
         self.operators = OperatorsCard(shortest, roles, self.clinic)
         self.column.addWidget(self.operators)
+        self.drivers = DriversCard()
+        self.column.addWidget(self.drivers)
         self._build_trouble()
         self.column.addStretch(1)
         self._connect()
@@ -94,6 +97,7 @@ class SettingsPage(TallPage):
             self.choose_folder,
             *self.station.tab_order,
             *self.more_stations.tab_order,
+            *self.drivers.toggles,
             self.report_error,
         ]
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, overload
 
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.dot_fleet import DotFleet, ReceivedDot
+from app.system.allowed_drivers import other_drivers
 from app.system.known_columns import known_columns
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice
 from app.wording.translation import later, tr, tr_n
@@ -121,7 +122,7 @@ class Sources(Sequence[SourceChoice]):
         found = self._found
         if found is None or not found.sensors:
             return []
-        by_driver = {driver: found.of(driver.key) for driver in DRIVERS}
+        by_driver = {driver: found.of(driver.key) for driver in (*DRIVERS, *found.others)}
         return [self._choice(driver.key, tr(driver.name), sensors) for driver, sensors in by_driver.items() if sensors]
 
     def _of_lines(self) -> list[SourceChoice]:
@@ -153,6 +154,8 @@ class Sources(Sequence[SourceChoice]):
             raise SourceRefusedError(
                 later("CSV data arrive, but their columns are not defined"), later("Choose these sensors as the source")
             )
+        if found.broken:
+            raise found.broken[0]
         if len(found.passed) == 1:  # then it is this one that is meant
             raise found.passed[0].refusal
         raise SourceRefusedError(later("No sensor found"), _remedy(found.deaf))
@@ -226,4 +229,4 @@ def _opening(sensors: "Sequence[FoundSensor]") -> Acquisition:
 
 
 def _search() -> "SearchResult":
-    return search(columns=known_columns(), radio=own_radio())
+    return search(columns=known_columns(), radio=own_radio(), others=other_drivers().drivers)

@@ -110,8 +110,9 @@ def test_a_file_that_takes_too_long_is_refused_with_two(
 
 
 def test_a_reader_that_fails_for_no_foreseen_reason_is_a_refusal_too(folder: Path) -> None:
-    reading = limited_reader.LimitedReading(the_reader(), nothing)
+    file = folder / "session.toml"
+    task = {"task": "none that there is", "path": str(file)}
     with pytest.raises(ReadingEndedError, match="reading stopped early; the reason is in the log") as caught:
-        reading.read_trial("no-such-format", [folder / "session.toml"], None)
+        the_reader().ask(task, [file], file.name, lambda details, _: details, nothing)
     assert caught.value.cause == child.UNFORESEEN
     assert foreign_files.the_reader().process is None

@@ -23,6 +23,7 @@ from app.home.settings.settings_page import SettingsPage
 from app.importing.import_drafts import drafts_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextKind, NextStep
+from app.system.allowed_drivers import DriverPackage
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.widgets.line_list import PatientLine, SessionLine
@@ -191,6 +192,12 @@ def settings() -> QWidget:
     page = SettingsPage(12, [("clinician", tr("clinician")), ("administrator", tr("administrator"))])
     page.show_library(has_access=True, has_backup=True, has_operators=True)
     page.operators.show_operators([OperatorLine("hk", "H. Keller", tr("administrator"), is_active=True, is_self=True)])
+    page.drivers.show_packages(
+        [
+            DriverPackage("gaitwright-sum-sensor", "1.0", ("sum-sensor",), is_allowed=True),
+            DriverPackage("laboratory-of-movement-sensors", "2026.11.1", ("lab-imu", "lab-imu-2"), is_allowed=False),
+        ]
+    )
     return page
 
 
