@@ -10,7 +10,8 @@ from core.findings import Finding, Severity
 from core.samples import ImuBlock, SensorInfo
 from devices.files.answers import BrokenAnswerError, details_of, value_from
 from devices.files.clock_repair import MOST_RESTARTS, FileClock, repaired, restarts_continued
-from devices.files.formats import FORMATS, FileFormat, read_trial
+from devices.files.file_format import FileFormat
+from devices.files.formats import FORMATS, read_trial
 from devices.files.imports import place_trial
 from devices.files.limited_reader import LimitedReader, LimitedReading
 from devices.files.refusal import FileRefusedError
