@@ -168,7 +168,12 @@ def _stated_columns(layout: TableLayout, choices: TableChoices, where: str) -> S
     """The columns of the one sensor that somebody states; None where nobody does."""
     if not choices.acc and not choices.gyr:
         return None
-    by_name = next(iter(_sensors_in(layout, layout.path)), SensorColumns("", (), ()))
+    by_name = SensorColumns("", (), ())
+    try:
+        by_name = next(iter(_sensors_in(layout, layout.path)), by_name)
+    except FileRefusedError:  # of two columns alike, between which somebody chooses
+        if not choices.acc or not choices.gyr:
+            raise
     acc, gyr = (
         () if stated == (NONE,) else _three(layout, stated, where) if stated else named
         for stated, named in ((choices.acc, by_name.acc), (choices.gyr, by_name.gyr))

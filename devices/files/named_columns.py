@@ -27,7 +27,7 @@ from devices.files.column_names import (
     without_quantity,
 )
 from devices.files.halves import OPEN, Half, joined, unit_by_gravity
-from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size
+from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size, rate_unit_by_gravity
 from devices.files.named_table import NamedTable
 from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
@@ -155,6 +155,8 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     acc = acc * FORCE_UNITS[acc_unit]
     if not gyr_unit and named.acc:
         gyr_unit = unit_by_gravity(stamps.time_s, acc[kept], gyr[kept], table.where, listed(named.gyr), findings)
+    elif named.acc:
+        _refuse_other_unit(table, named, gyr_unit, rate_unit_by_gravity(stamps.time_s, acc[kept], gyr[kept]))
     gyr = gyr * RATE_UNITS[gyr_unit or OPEN]
     q = _orientation(_matrix(table, named.quat, lengths)[kept], acc[kept]) if named.quat else None
     if named.quat and q is None:
@@ -245,6 +247,19 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
         return ""
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.gyr), "unit": "deg/s"}))
     return "deg/s"
+
+
+def _refuse_other_unit(table: NamedTable, named: SensorColumns, reported: str, found: str) -> None:
+    """Refuse rates in deg/s that turn gravity as rad/s do; raises FileRefusedError. Others are too fast by size."""
+    if (reported, found) == ("deg/s", "rad/s"):
+        raise FileRefusedError(
+            table.where,
+            "the angular rates {names} are labelled {reported}, but gravity turns as if they were in {unit}",
+            "Correct the unit, or export the angular rates again in rad/s",
+            names=listed(named.gyr),
+            reported=reported,
+            unit=found,
+        )
 
 
 def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:

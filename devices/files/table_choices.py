@@ -13,7 +13,7 @@ from devices.files.refusal import FileRefusedError
 
 NONE = "none"  # in place of a column: the table has no such one
 COUNT, CLOCK = "count", "clock"  # units of times: samples counted, and texts such as 23:59:59.990
-TIME_UNITS = ("s", "ms", "us", "ns", "d", COUNT, CLOCK)
+TIME_UNITS = ("s", "ms", "us", "ns", "min", "h", "d", COUNT, CLOCK)
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "space": " "}
 
 

@@ -27,6 +27,8 @@ TIME_UNIT_WORDS: Mapping[str, str] = {
     "ms": later("milliseconds"),
     "us": later("microseconds"),
     "ns": later("nanoseconds"),
+    "min": later("minutes"),
+    "h": later("hours"),
     "d": later("days"),
     COUNT: later("samples counted"),
     CLOCK: later("time of day or date"),
