@@ -64,6 +64,7 @@ EMPTY_WORDS = frozenset(
     )
 )
 NOT_FELT = frozenset(str.split("gravity gravitation grav schwerkraft"))  # its direction alone, in units of acceleration
+ALONE = frozenset(str.split("ms us µs μs ns sec msec usec millis micros seconds milliseconds microseconds"))  # of times
 ABSOLUTE_WORDS = frozenset(str.split("unix epoch epoc utc timestamp"))  # of times that files of one trial share
 SENSOR_NAMES = frozenset(  # of columns that state which sensor a row is from
     str.split(
@@ -213,6 +214,8 @@ def _axis_by_unit(words: Sequence[str], unit: str) -> dict[int, tuple[Quantity, 
 def _elapsed_unit(words: Sequence[str], unit: str) -> str:
     """The unit of time of a name that has no other word for a quantity: "elapsed (s)", "seconds_elapsed"."""
     left = [word for word in words if word.lower() not in EMPTY_WORDS]
+    if len(words) == 1 and words[0].lower() in ALONE:
+        return unit_of(Quantity.TIME, words[0])
     if len(left) == len(words) or len(left) > 1:
         return ""
     return unit_of(Quantity.TIME, left[0] if left else unit)
@@ -357,6 +360,13 @@ def _one_time(
         if reported:
             return (shared or reported)[0]
     return ""
+
+
+def time_among(names: Sequence[str], units: Mapping[str, str]) -> str:
+    """The column of times by its name, of all sensors; empty where there is none."""
+    meant = {name: meaning for name in names if (meaning := meaning_of(name, units.get(name, ""))) is not None}
+    times = [name for name, one in meant.items() if one.quantity is Quantity.TIME and not one.sensor]
+    return _one_time({("", Quantity.TIME): {"": times}}, meant, "") if times else ""
 
 
 def _refuse_both(names: Sequence[str]) -> None:

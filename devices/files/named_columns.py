@@ -35,8 +35,12 @@ from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile, read_
 
 GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels, by which a unit is found
 LEAST_DOWN = 0.3  # of the size of the mean, where a unit is found by size: acceleration without gravity has none
+MOST_WITH_DIGITS = 1000.0
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
+MOST_FELT = GRAVITY_M_S2[1] / min(FORCE_UNITS.values())  # as a number, in the smallest unit
+FREE = "Export acceleration in m/s2 with gravity, not free or linear acceleration"
+COUNTS = "Export acceleration in m/s2, not the counts of the sensor's converter"
 NAME_THEM = (
     "Name the columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with units as in acc_x_m_s2 "
     "and gyr_x_deg_s; with several sensors left_shank_acc_x and so on"
@@ -201,27 +205,31 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
             "Correct the unit, or export the data again in m/s2",
             names=listed(named.acc),
             reported=reported,
-            middle=f"{middle:.3g}",
+            middle=_figure(middle),
             unit=fits[0],
         )
     if not fits:
         raise FileRefusedError(
             table.where,
             "the median of the acceleration {names} is {middle}, which does not match gravity in {units}",
-            "Export acceleration in m/s2 with gravity, not free or linear acceleration",
+            COUNTS if middle > MOST_FELT else FREE,
             names=listed(named.acc),
-            middle=f"{middle:.3g}",
+            middle=_figure(middle),
             units=reported or ", ".join(FORCE_UNITS),
         )
     if float(np.linalg.norm(np.nanmean(acc, axis=0))) < LEAST_DOWN * middle:
         raise FileRefusedError(
             table.where,
             "the acceleration {names} points nowhere in the mean, as if gravity had been removed",
-            "Export acceleration in m/s2 with gravity, not free or linear acceleration",
+            FREE,
             names=listed(named.acc),
         )
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.acc), "unit": fits[0]}))
     return fits[0]
+
+
+def _figure(value: float) -> str:
+    return f"{value:.0f}" if value >= MOST_WITH_DIGITS else f"{value:.3g}"
 
 
 def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings: list[Finding]) -> str:
@@ -238,7 +246,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
                 "Correct the unit, or export the angular rates again in rad/s",
                 names=listed(named.gyr),
                 reported=reported,
-                largest=f"{largest:.3g}",
+                largest=_figure(largest),
             )
         return reported
     if not len(rates):

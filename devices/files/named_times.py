@@ -44,7 +44,7 @@ def stamps_of(
     reported_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
     if table.time_s is not None:
-        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, f"{table.time} [s]"
+        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, table.time), 1.0, f"{table.time} [s]"
     elif named.time and len(table.columns[named.time]) == len(is_there):
         values = _unwrapped(table, table.columns[named.time][rows], rows, named.time)
         meaning = meaning_of(named.time, table.units.get(named.time, ""))

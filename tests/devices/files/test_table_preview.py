@@ -27,6 +27,7 @@ from tests.devices.files.test_public_layouts import (
     lpms,
     no_header,
     rows_of,
+    windows_excel,
     write,
 )
 
@@ -144,6 +145,16 @@ def test_a_wrong_choice_shows_why_it_cannot_be(tmp_path: Path) -> None:
     assert "neither acceleration nor angular rates are chosen" in refusal(acc=(NONE,), gyr=(NONE,))
     assert "in column t is not a number" in refusal(decimal=",")
     assert "the file is no table of numbers" in refusal(separator=";")
+
+
+def test_a_column_without_name_and_content_is_refused_as_times_or_names_of_sensors(tmp_path: Path) -> None:
+    (path,) = windows_excel(tmp_path)
+    for stated, why in (
+        (TableChoices(time="column 8", time_unit="clock"), 'a sample has no time in column "column 8"'),
+        (TableChoices(sensor="column 9"), 'the column "column 9" holds 0 different names of sensors'),
+    ):
+        refusal = preview_of(path, stated).refusal
+        assert why in str(refusal)
 
 
 def test_the_sensors_of_a_table_may_be_named_by_a_column_or_not(tmp_path: Path) -> None:
