@@ -154,9 +154,12 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
 
 
 def _sensors_in(layout: TableLayout, path: Path) -> tuple[SensorColumns, ...]:
-    """The sensors by the names of the columns, else their halves."""
-    whole = sensor_columns(layout.names, layout.units)
-    return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
+    """The sensors by the names of the columns, else their halves; raises FileRefusedError for two columns alike."""
+    try:
+        whole = sensor_columns(layout.names, layout.units)
+        return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
+    except FileRefusedError as refusal:
+        raise FileRefusedError.stated_elsewhere(path.name, refusal.what, refusal.remedy, refusal.values) from None
 
 
 def columns_in(layout: TableLayout, choices: TableChoices) -> tuple[SensorColumns, ...]:

@@ -39,6 +39,7 @@ MOST_WITH_DIGITS = 1000.0
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
 MOST_FELT = GRAVITY_M_S2[1] / min(FORCE_UNITS.values())  # as a number, in the smallest unit
+NO_GRAVITY = "the median of the acceleration {names} is {middle}, which does not match gravity in {units}"
 FREE = "Export acceleration in m/s2 with gravity, not free or linear acceleration"
 COUNTS = "Export acceleration in m/s2, not the counts of the sensor's converter"
 NAME_THEM = (
@@ -209,14 +210,10 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
             unit=fits[0],
         )
     if not fits:
-        raise FileRefusedError(
-            table.where,
-            "the median of the acceleration {names} is {middle}, which does not match gravity in {units}",
-            COUNTS if middle > MOST_FELT else FREE,
-            names=listed(named.acc),
-            middle=_figure(middle),
-            units=reported or ", ".join(FORCE_UNITS),
-        )
+        names, shown, units = listed(named.acc), _figure(middle), reported or ", ".join(FORCE_UNITS)
+        if middle > MOST_FELT:
+            raise FileRefusedError(table.where, NO_GRAVITY, COUNTS, names=names, middle=shown, units=units)
+        raise FileRefusedError(table.where, NO_GRAVITY, FREE, names=names, middle=shown, units=units)
     if float(np.linalg.norm(np.nanmean(acc, axis=0))) < LEAST_DOWN * middle:
         raise FileRefusedError(
             table.where,

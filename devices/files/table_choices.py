@@ -66,6 +66,7 @@ class TablePreview:
 
     `lines`: the first of the file. `choices`: what has to be stated for the file to be read so: what somebody stated,
     and what was found by values alone. `found`: every choice as it is in force. `refusal`: why it cannot be read so.
+    `unread`: why some of its sensors cannot.
     """
 
     fingerprint: str
@@ -78,6 +79,7 @@ class TablePreview:
     is_by_values: bool
     is_cut: bool
     refusal: FileRefusedError | None
+    unread: tuple[FileRefusedError, ...] = ()
 
 
 def by_place(choices: TableChoices, names: Sequence[str]) -> TableChoices:

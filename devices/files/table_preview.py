@@ -44,11 +44,13 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         )
     choices = _with_guesses(layout, stated)
     sensors: list[PreviewedSensor] = []
+    unread: list[FileRefusedError] = []
     why: FileRefusedError | None = None
     try:
         for table in tables_of(path, choices, PREVIEW_BYTES):
             halves = [half.sensor for half in halves_of_table(table, choices.rate_hz)]
-            read = halves or sensors_of_table(table, choices.rate_hz)[0]
+            read, refused = (halves, []) if halves else sensors_of_table(table, choices.rate_hz)
+            unread += [one.refusal for one in refused]
             sensors += [_beginning(one.name, one.block, one.info.rate_hz, one.findings) for one in read]
     except FileRefusedError as refusal:
         why, sensors = refusal, []
@@ -64,6 +66,7 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         is_by_values=(choices.acc, choices.gyr) != (stated.acc, stated.gyr),
         is_cut=path.stat().st_size > PREVIEW_BYTES,
         refusal=why,
+        unread=() if why is not None else tuple(unread),
     )
 
 

@@ -21,6 +21,7 @@ from app.home.importing.table_words import (
     TIME_UNIT_WORDS,
     column_words,
     findings_of,
+    refused_line,
     stated_of,
     why_shown,
 )
@@ -120,7 +121,9 @@ class TableForm(QWidget):
         for part in (self._shown_label, self.shown):
             part.setVisible(len(names) > 1)
         self._show_curves()
-        self._noticed.setText(column_words("\n".join(map(sentence, findings_of(preview)))))
+        self._noticed.setText(
+            column_words("\n".join([*map(refused_line, preview.unread), *map(sentence, findings_of(preview))]))
+        )
         self._noticed.setVisible(bool(self._noticed.text()))
         self._show_rows(preview)
 

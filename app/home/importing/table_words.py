@@ -76,7 +76,7 @@ def refused(refusal: FileRefusedError) -> tuple[str, str]:
 
 
 def why_shown(why: FileRefusedError | None, preview: TablePreview) -> str:
-    """Why a table was not recognised, where that is not what is wrong with it anyway; what to do stands below it."""
+    """Why a table was not recognised, where that is not what is wrong with it anyway; what to do is below it."""
     if why is None or (preview.refusal is not None and preview.refusal.what == why.what):
         return ""
     return refused(why)[0]
@@ -126,6 +126,8 @@ def _to_look_at(preview: TablePreview) -> tuple[str, bool]:
         return tr("This file has no acceleration; it must be in a second file of this sensor."), True
     if not STILL[0] < felt < STILL[1]:
         return tr("Gravity should be about 9.8 m/s². Check the columns and unit of acceleration."), True
+    if preview.unread:
+        return tr("Other sensors in this table cannot be read. The reasons are below the curves."), True
     if preview.is_by_values:
         return tr("The columns were found by their values alone. Check them."), True
     return tr("Compare the curves with what you know of the recording."), False

@@ -11,7 +11,7 @@ from core.body import Site
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files import table_choices, text_files
 from devices.files.session_folder import read_session
-from tests.devices.files.test_public_layouts import LEFT, no_header, rows_of, write
+from tests.devices.files.test_public_layouts import LEFT, ngimu, no_header, rows_of, write, ximu
 
 BY_HAND = ["--header-line", "0", "--acc", "2,3,4", "--gyr", "5,6,7", "--gyr-unit", "rad/s", "--time", "1"]
 
@@ -33,6 +33,12 @@ def test_a_table_without_names_is_read_as_stated(tmp_path: Path, capsys: pytest.
     block = read_session(out).recordings[0].imu[Site.LEFT_SHANK]
     np.testing.assert_allclose(block.acc_m_s2, LEFT.acc, atol=1e-5)
     np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
+
+
+def test_a_preview_names_the_program_that_is_recognised(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for make, is_named in ((ximu, True), (ngimu, False)):
+        assert main(["import", "--preview", str(make(tmp_path)[0])]) == 0
+        assert ("recognised as ximu, and read so unless" in capsys.readouterr().out) is is_named
 
 
 def test_a_preview_gives_the_options_that_read_the_table_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -535,6 +535,12 @@ def two_ranges(folder: Path) -> list[Path]:
     return [write(folder / "a.csv", [",".join(names), *rows_of(LEFT.time_s, LEFT.acc, LEFT.acc, np.degrees(LEFT.gyr))])]
 
 
+def counts_of_a_converter(folder: Path) -> list[Path]:
+    """An MPU-6050 without its scales; the times by their unit alone."""
+    body = rows_of(1000 * LEFT.time_s, LEFT.acc * 4096 / G, np.degrees(LEFT.gyr) * 32.8, form="%.0f")
+    return [write(folder / "a.csv", ["ms,ax,ay,az,gx,gy,gz", *body])]
+
+
 def whole_seconds(folder: Path) -> list[Path]:
     """Excel has shown the times without their fractions."""
     head = "Date/Time,Accel X (g),Accel Y (g),Accel Z (g),Gyro X (deg/s),Gyro Y (deg/s),Gyro Z (deg/s)"
@@ -561,6 +567,7 @@ REFUSED = {
     "two ranges": (two_ranges, "S1 Accel low X (m/s²), S1 Accel wide X (m/s²) have the same meaning"),
     "whole seconds": (whole_seconds, "792 of 800 samples have the same time as the sample before"),
     "LabChart": (labchart, "the samples in the file have no times"),
+    "counts": (counts_of_a_converter, "Export acceleration in m/s2, not the counts of the sensor's converter"),
     "Nexus in mm/s2": (lambda folder: nexus(folder, "mm/s^2", 1000.0), 'is in "mm/s^2", expected one of m/s2, g, mg'),
     "MotionSense": (motionsense, "does not match gravity in"),
     "Sensor Logger, no gravity": (
@@ -581,7 +588,7 @@ STATED = {  # what somebody states of a table that is refused else
     "LabChart": (labchart, TableChoices(time="1", time_unit="s")),
     "two ranges": (
         two_ranges,
-        TableChoices(acc=("5", "6", "7"), acc_unit="m/s2", gyr=("8", "9", "10"), gyr_unit="deg/s", time="1"),
+        TableChoices(acc=("5", "6", "7"), acc_unit="m/s2", gyr=("8", "9", "10"), gyr_unit="deg/s"),
     ),
 }
 
