@@ -14,6 +14,7 @@ from devices.files.table_choices import CLOCK, COUNT, SEPARATORS, PreviewedSenso
 from devices.files.table_header import UNNAMED
 from devices.files.text_files import UTF_8, UTF_16, WINDOWS
 
+OPTIONS = re.compile(r" \(--[^()]*\)")
 LINE = re.compile(r", line (\d+)$")
 NAMELESS = re.compile(rf"\b{UNNAMED} (\d+)\b")
 STILL = 8.5, 11.0  # m/s²: what the middle of a recording is near to
@@ -72,7 +73,7 @@ def refused(refusal: FileRefusedError) -> tuple[str, str]:
     line = LINE.search(refusal.where)
     if line is not None:
         what = tr("Line {number}: {what}").format(number=line[1], what=filled(refusal.what, refusal.values))
-    return f"{what}.", f"{filled(refusal.remedy, refusal.values)}."
+    return f"{what}.", f"{_remedy(refusal)}."
 
 
 def why_shown(why: FileRefusedError | None, preview: TablePreview) -> str:
@@ -89,8 +90,12 @@ def column_words(text: str) -> str:
 
 def refused_line(refusal: FileRefusedError) -> str:
     """Where, what is wrong, and what to do in one line: one of several that could not be read."""
-    stated = f"{filled(refusal.what, refusal.values)}. {filled(refusal.remedy, refusal.values)}."
-    return f"{refusal.where}: {stated}"
+    return f"{refusal.where}: {filled(refusal.what, refusal.values)}. {_remedy(refusal)}."
+
+
+def _remedy(refusal: FileRefusedError) -> str:
+    """What to do, without the options of the command line."""
+    return OPTIONS.sub("", filled(refusal.remedy, refusal.values))
 
 
 def findings_of(preview: TablePreview) -> tuple[Finding, ...]:

@@ -160,6 +160,14 @@ def test_a_sensor_that_cannot_be_read_beside_one_that_can_is_named(tmp_path: Pat
     assert preview_of(table(tmp_path / "b.csv"), STATED).unread == ()
 
 
+def test_units_that_names_give_are_shown_where_a_table_is_refused(tmp_path: Path) -> None:
+    names = ["ms", *(f"acc {axis} (g)" for axis in "xyz"), *(f"gyr {axis} (deg/s)" for axis in "xyz")]
+    preview = preview_of(table(tmp_path / "a.csv", names=tuple(names)), NO_CHOICES)
+    assert "is labelled g, but its median" in str(preview.refusal)
+    assert (preview.found.time, preview.found.time_unit) == ("ms", "ms")
+    assert (preview.found.acc_unit, preview.found.gyr_unit) == ("g", "deg/s")
+
+
 def test_a_column_without_name_and_content_is_refused_as_times_or_names_of_sensors(tmp_path: Path) -> None:
     (path,) = windows_excel(tmp_path)
     for stated, why in (
