@@ -96,6 +96,8 @@ def _preview(path: Path, stated: TableChoices, progress: Report) -> Iterator[str
     known = gather_foreign([path], lambda: progress(0.0, path.name)).trials
     if known and known[0].format != CSV:
         yield f"  recognised as {known[0].format}, and read so unless something is stated of its columns"
+        if preview.refusal is not None and not stated.are_any:
+            return
     if preview.columns:
         yield f"  columns: {', '.join(f'{number} {one_line(name)}' for number, name in enumerate(preview.columns, 1))}"
         yield f"  read with: {' '.join(_options(preview.found))}"

@@ -127,7 +127,7 @@ SUPERSCRIPTS = str.maketrans({"²": "2", "¹": "1", "⁻": "-", "−": "-"})
 LONGEST_NAME = 200
 # what capitals, digits and signs divide; a digit stays with the letters before it
 WORD = re.compile(r"[A-ZÀ-Þ]+(?![a-zß-ÿ])\d*|[A-ZÀ-Þ]?[a-zß-ÿµμ°]+\d*|\d+|[^\W_]")
-MOST_NAMES = 12  # in a sentence
+MOST_NAMES, LONGEST_LISTED = 12, 40  # in a sentence
 
 
 @dataclass(frozen=True, slots=True)
@@ -436,4 +436,9 @@ def _plain_unit(text: str) -> str:
 def listed(names: Sequence[str]) -> str:
     """Names as they can stand in a sentence."""
     more = f" (+{len(names) - MOST_NAMES})" if len(names) > MOST_NAMES else ""
-    return ", ".join(name[:40] for name in names[:MOST_NAMES]) + more
+    return ", ".join(map(_short, names[:MOST_NAMES])) + more
+
+
+def _short(name: str) -> str:
+    """A long name without its middle: axis and unit are at its end."""
+    return name if len(name) <= LONGEST_LISTED else f"{name[: LONGEST_LISTED - 21]}…{name[-20:]}"

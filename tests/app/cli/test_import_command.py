@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from app.cli import arguments
 from app.cli.main import main
@@ -36,6 +37,11 @@ def test_a_table_without_names_is_read_as_stated(tmp_path: Path, capsys: pytest.
 
 
 def test_a_preview_names_the_program_that_is_recognised(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    archive = tmp_path / "a.mat"
+    savemat(archive, {"acc": LEFT.acc, "gyr": LEFT.gyr, "fs": 100.0})
+    assert main(["import", "--preview", str(archive)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == ["a.mat:", "  recognised as matlab, and read so unless something is stated of its columns"]
     for make, is_named in ((ximu, True), (ngimu, False)):
         assert main(["import", "--preview", str(make(tmp_path)[0])]) == 0
         assert ("recognised as ximu, and read so unless" in capsys.readouterr().out) is is_named

@@ -90,6 +90,13 @@ def test_why_a_table_is_refused_is_stated_once_and_in_which_line(qtbot: QtBot, h
     assert shown(home.importing.page).count("the line has 8 columns") == 1
 
 
+def test_no_option_of_the_command_line_is_shown(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    form = explain(qtbot, home, table(tmp_path / "a.csv"))
+    press_to(form.time, "none")
+    wait_for(qtbot, form, "The samples in the file have no times.")
+    assert form.notice.text.endswith("time_us, or give the sampling rate.")
+
+
 def test_columns_without_names_are_called_by_their_places(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     use_language("de")
     try:
