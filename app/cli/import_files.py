@@ -12,6 +12,7 @@ from app.cli.arguments import DECIMALS, SEPARATORS
 from app.cli.progress import finding_lines
 from app.importing.splitting import clock_view_of, split_all
 from app.importing.untrusted_files import (
+    gather_foreign,
     preview_foreign_table,
     read_foreign_session,
     read_foreign_trial,
@@ -35,6 +36,8 @@ from devices.files.imports import (
 from devices.files.refusal import FileRefusedError, one_line
 from devices.files.table_choices import ALL_TABLES, NONE, NOTHING_STATED, TableChoices
 from devices.files.trial import ImportedTrial
+
+CSV = "csv"  # of `trial.PROGRAMS`: tables of no particular program
 
 
 def run(args: argparse.Namespace, progress: Report) -> list[str]:
@@ -105,6 +108,11 @@ def _preview(path: Path, stated: TableChoices, progress: Report) -> Iterator[str
     """How a table is read, in the words of the options."""
     preview = preview_foreign_table(path, stated, lambda: progress(0.0, path.name))
     yield f"{one_line(path.name)}:"
+    known = gather_foreign([path], lambda: progress(0.0, path.name)).trials
+    if known and known[0].format != CSV:
+        yield f"  recognised as {known[0].format}, and read so unless something is stated of its columns"
+        if preview.refusal is not None and not stated.are_any:
+            return
     if preview.columns:
         yield f"  columns: {', '.join(f'{number} {one_line(name)}' for number, name in enumerate(preview.columns, 1))}"
         yield f"  read with: {' '.join(_options(preview.found))}"
@@ -113,6 +121,8 @@ def _preview(path: Path, stated: TableChoices, progress: Report) -> Iterator[str
     for sensor in preview.sensors:
         rate = f"{sensor.rate_hz:g} Hz" if sensor.rate_hz else "no rate"
         yield f"  sensor {one_line(sensor.name)}: {rate}, {sensor.length_s:.1f} s{' at least' * preview.is_cut}"
+    for refusal in preview.unread:
+        yield f"  not read: {refusal}"
     if preview.refusal is not None:
         yield f"  {preview.refusal}"
 

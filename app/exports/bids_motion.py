@@ -2,9 +2,10 @@
 
 As the Brain Imaging Data Structure has it for motion: one table without heads for each tracking system, which is all
 sensors of one time base, with the latencies from the start of the recording in its first column. Samples and times are
-those of the recording to their last digit; what is missing is n/a. Two columns of ours say what BIDS has no word for,
-the sensor's number and what its rates are; two settings state what is simulated, and that the latencies of several
-tracking systems have one zero: `gaitwright import` gives back the same recording. Events have the same zero.
+those of the recording to their last digit; what is missing is n/a. Three columns of ours say what BIDS has no word for:
+the sensor's number, what its rates are, and which sensors share a clock. Two settings state what is simulated, and that
+the latencies of several tracking systems have one zero: `gaitwright import` gives back the same recording. Events have
+the same zero.
 """
 
 import json
@@ -40,7 +41,17 @@ DERIVED = "derived"
 # of our own, as BIDS has no words for them: an import keeps what nobody was measured for apart, and systems together
 IS_SIMULATED, IS_COMMON_START = "Simulated", "LatenciesFromOneStart"
 AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
-COLUMNS = ("name", "component", "type", "tracked_point", "units", "reference_frame", "sensor", "rate_kind")
+COLUMNS = (
+    "name",
+    "component",
+    "type",
+    "tracked_point",
+    "units",
+    "reference_frame",
+    "sensor",
+    "rate_kind",
+    "shared_clock",
+)
 ABOUT_COLUMNS = {
     "reference_frame": {
         "Levels": {
@@ -61,6 +72,7 @@ ABOUT_COLUMNS = {
             DERIVED: "Computed from the sensor's own orientation: no rates were measured.",
         },
     },
+    "shared_clock": {"Description": "Sensors with the same value were timed by one clock."},
 }
 ABOUT_EVENTS = {
     "onset": {"Description": "On the clock of the latencies, from the start of the recording.", "Units": "s"},
@@ -154,9 +166,11 @@ def _write_system(session: Session, recording: Recording, sites: Sequence[Site],
     time_s = recording.imu[sites[0]].time_s
     latency = {"name": "latency", "component": MISSING, "type": "LATENCY", "tracked_point": MISSING, "units": "s"}
     channels = [BidsChannel(latency, time_s)]
+    clocks = list(dict.fromkeys(info.clock for info in session.sensors.values() if info.clock))
     for site in sites:
         info = session.sensors.get(site, SensorInfo())
-        channels += _channels(_point(site), recording.imu[site], info)
+        clock = f"clock{clocks.index(info.clock) + 1}" if info.clock else ""  # its name may be a computer's
+        channels += _channels(_point(site), recording.imu[site], info, clock)
     table = ["\t".join(COLUMNS)]
     table += ["\t".join(one.row.get(name) or MISSING for name in COLUMNS) for one in channels]
     base.with_name(f"{base.name}_channels.tsv").write_text("\n".join([*table, ""]), encoding="utf-8")
@@ -169,7 +183,7 @@ def _write_system(session: Session, recording: Recording, sites: Sequence[Site],
     _write_json(base.with_name(f"{base.name}_motion.json"), _settings(session, recording, sites, channels, system))
 
 
-def _channels(point: str, block: ImuBlock, info: SensorInfo) -> list[BidsChannel]:
+def _channels(point: str, block: ImuBlock, info: SensorInfo, clock: str) -> list[BidsChannel]:
     rate_kind = DERIVED if block.is_rate_derived else (info.rate_kind or "")
     quantities = [
         ("ACCEL", AXES, "m/s^2", "sensor", block.acc_m_s2),
@@ -190,6 +204,7 @@ def _channels(point: str, block: ImuBlock, info: SensorInfo) -> list[BidsChannel
                 "reference_frame": frame,
                 "sensor": _cell(block.sensor),
                 "rate_kind": rate_kind if kind == "GYRO" else "",
+                "shared_clock": clock,
             }
             found.append(BidsChannel(row, values[:, k]))
     return found

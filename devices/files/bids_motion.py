@@ -145,7 +145,9 @@ def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> Importe
     )
     kind = RateKind.INSTANTANEOUS if first.rate_kind == DERIVED else None
     kind = RateKind(first.rate_kind) if first.rate_kind in set(RateKind) else kind
-    info = SensorInfo(serial=first.sensor or point, model=system.maker, rate_hz=rate_hz, rate_kind=kind)
+    info = SensorInfo(
+        serial=first.sensor or point, model=system.maker, rate_hz=rate_hz, rate_kind=kind, clock=first.clock
+    )
     findings = [*system.of_rows, *clock.findings]
     if block.is_rate_derived:
         findings.append(Finding("rate_from_orientation", Severity.INFO, ""))

@@ -19,7 +19,7 @@ ENDINGS = (MOTION, CHANNELS, SETTINGS, "_channels.json")
 SCANS = "*_scans.tsv"
 MOST_SCANS = 10
 REQUIRED = ("name", "type", "tracked_point", "component", "units")  # columns of a table of channels
-SENSOR, RATE_KIND = "sensor", "rate_kind"  # columns of ours
+SENSOR, RATE_KIND, CLOCK = "sensor", "rate_kind", "shared_clock"  # columns of ours
 IS_SIMULATED, IS_COMMON_START = "Simulated", "LatenciesFromOneStart"  # settings of ours
 MISSING = frozenset(("n/a", "nan", ""))
 LONGEST_LINE = 1_000_000  # bytes
@@ -39,6 +39,7 @@ class MotionChannel:
     frame: str
     sensor: str
     rate_kind: str
+    clock: str
 
 
 @dataclass(slots=True)
@@ -160,6 +161,7 @@ def _read_channels(path: Path) -> tuple[dict[str, dict[tuple[str, str], int]], l
             frame=row.get("reference_frame", ""),
             sensor=row.get(SENSOR, ""),
             rate_kind=row.get(RATE_KIND, ""),
+            clock=row.get(CLOCK, ""),
         )
         of_point = points.setdefault(row["tracked_point"], {})
         if (one.type, one.component) in of_point:

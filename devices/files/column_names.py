@@ -5,7 +5,7 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
@@ -33,8 +33,8 @@ WORDS = {  # a word that names a quantity
     **dict.fromkeys(("gyroskop", "giroscopio", "giroscópio", "gyroscoop", "drehrate"), Quantity.GYR),
     **dict.fromkeys(("mag", "magn", "magneto", "magnetometer", "magnetometers"), Quantity.MAG),
     **dict.fromkeys(("quat", "quaternion", "quaternions", "orientation"), Quantity.QUAT),
-    **dict.fromkeys(("time", "timestamp", "timestamps", "times"), Quantity.TIME),
-    **dict.fromkeys(("zeit", "zeitstempel", "temps", "tiempo", "tempo", "tijd"), Quantity.TIME),
+    **dict.fromkeys(("time", "timestamp", "timestamps", "times", "datetime"), Quantity.TIME),
+    **dict.fromkeys(("uhrzeit", "zeit", "zeitstempel", "temps", "tiempo", "tempo", "tijd"), Quantity.TIME),
 }
 LETTERS = {"a": Quantity.ACC, "g": Quantity.GYR, "w": Quantity.GYR, "m": Quantity.MAG, "q": Quantity.QUAT}  # "ax", "q0"
 PHRASES = (  # of several words, written as the one above
@@ -44,13 +44,13 @@ PHRASES = (  # of several words, written as the one above
     (r"(?:free|linear|lin|user)[\W_]*acc(?:el(?:eration|erometer)?)?", " freeacc "),
     (r"lineare?[\W_]*beschleunigung|acc[eé]l[eé]ration[\W_]*lin[eé]aire|linear[\W_]*versnelling", " freeacc "),
     (r"accelerometer[\W_]*acceleration|specific[\W_]*force", " acc "),
-    (r"beschleunigung|acc[eé]l[eé]ration|aceleraci[oó]n|accelerazione|versnelling|加速度", " acc "),
+    (r"\bbeschl\b|beschleunigung|acc[eé]l[eé]ration|aceleraci[oó]n|accelerazione|versnelling|加速度", " acc "),
     (r"\bas(?=[xyz]\b)", " gyr "),  # "AsX": angular speed, of WitMotion
     (r"\bgf(?=[xyz]\b)", " acc "),  # "gFx": of Physics Toolbox
     (r"magnetic[\W_]*field|magnetfeld|磁场", " mag "),
     (r"time[\W_]*stamp|时间", " timestamp "),
 )
-SHORT = re.compile(r"([agw])_([xyz])")  # in small letters: "A_x" may be of a sensor "A"
+SHORT = re.compile(r"([agw])_([xyz])")  # in small letters, or with its unit: "A_x" may be of a sensor "A"
 OTHER_WORDS = frozenset(
     str.split(
         "raw uncal uncalibrated norm magnitude mean std sd var bias offset temp temperature range scale delta inc "
@@ -59,10 +59,12 @@ OTHER_WORDS = frozenset(
 )
 EMPTY_WORDS = frozenset(
     str.split(
-        "data value values cal calib calibrated signal axis the in unix epoch epoc utc elapsed since reboot boot "
+        "data date value values cal calib calibrated signal axis the in unix epoch epoc utc elapsed since reboot boot "
         "logging"
     )
 )
+NOT_FELT = frozenset(str.split("gravity gravitation grav schwerkraft"))  # its direction alone, in units of acceleration
+ALONE = frozenset(str.split("ms us µs μs ns sec msec usec millis micros seconds milliseconds microseconds"))  # of times
 ABSOLUTE_WORDS = frozenset(str.split("unix epoch epoc utc timestamp"))  # of times that files of one trial share
 SENSOR_NAMES = frozenset(  # of columns that state which sensor a row is from
     str.split(
@@ -86,7 +88,7 @@ AXES = {Quantity.QUAT: ("w", "x", "y", "z")}
 XYZ = ("x", "y", "z")
 SCALAR_FIRST = dict(zip("0123", "wxyz", strict=True))  # q0 is the scalar; where q1 to q4 have it is not agreed on
 
-SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "d": 86_400.0}
+SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 SCALES: Mapping[Quantity, Mapping[str, float]] = {
     Quantity.ACC: FORCE_UNITS,
     Quantity.FREE_ACC: FORCE_UNITS,
@@ -104,7 +106,7 @@ SPELLINGS: Mapping[Quantity, Mapping[str, str]] = {  # as `_plain_unit` leaves t
         **dict.fromkeys(("rad/s", "rads", "rad/sec", "radps", "rads-1", "radpers", "radians/s", "radian/s"), "rad/s"),
         **dict.fromkeys(("deg/s", "degs", "dps", "°/s", "°s-1", "deg/sec", "degps", "degs-1", "degpers"), "deg/s"),
         **dict.fromkeys(("degrees/s", "degree/s", "degrees/sec", "degree/second", "degrees/second"), "deg/s"),
-        **dict.fromkeys(("d/s", "°/sec", "º/s", "grad/s"), "deg/s"),
+        **dict.fromkeys(("d/s", "°/sec", "º/s", "â°/s", "grad/s"), "deg/s"),
         **dict.fromkeys(("mdeg/s", "mdps", "mdegs"), "mdeg/s"),
     },
     Quantity.TIME: {
@@ -112,6 +114,8 @@ SPELLINGS: Mapping[Quantity, Mapping[str, str]] = {  # as `_plain_unit` leaves t
         **dict.fromkeys(("ms", "msec", "millis", "millisec", "millisecond", "milliseconds"), "ms"),
         **dict.fromkeys(("us", "µs", "μs", "usec", "micros", "microsec", "microsecond", "microseconds"), "us"),
         **dict.fromkeys(("ns", "nsec", "nanos", "nanosecond", "nanoseconds"), "ns"),
+        **dict.fromkeys(("min", "mins", "minute", "minutes"), "min"),
+        **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), "h"),
         **dict.fromkeys(("d", "day", "days"), "d"),
     },
     Quantity.MAG: dict.fromkeys(("ut", "µt", "μt", "nt", "gauss", "ga", "mgauss", "au"), "any"),
@@ -123,7 +127,7 @@ SUPERSCRIPTS = str.maketrans({"²": "2", "¹": "1", "⁻": "-", "−": "-"})
 LONGEST_NAME = 200
 # what capitals, digits and signs divide; a digit stays with the letters before it
 WORD = re.compile(r"[A-ZÀ-Þ]+(?![a-zß-ÿ])\d*|[A-ZÀ-Þ]?[a-zß-ÿµμ°]+\d*|\d+|[^\W_]")
-MOST_NAMES = 12  # in a sentence
+MOST_NAMES, LONGEST_LISTED = 12, 40  # in a sentence
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +170,8 @@ def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
         return NamedQuantity("", Quantity.COUNTER, "", "")
     if plain in SAMPLE_RATES:
         return NamedQuantity("", Quantity.SAMPLE_RATE, "", "")
-    if short := SHORT.fullmatch(text.strip()):
+    short = SHORT.fullmatch(text.strip().lower())
+    if short and (text.strip() == short[0] or unit_of(LETTERS[short[1]], bracketed or unit)):
         text = "".join(short.groups())
     for phrase, word in PHRASES:
         text = re.sub(phrase, word, text, flags=re.IGNORECASE)
@@ -198,16 +203,19 @@ def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
 
 
 def _axis_by_unit(words: Sequence[str], unit: str) -> dict[int, tuple[Quantity, str]]:
-    """What the unit gives of a name that has nothing but an axis: "x-axis (deg/s)"."""
-    left = [k for k, word in enumerate(words) if word.lower() not in EMPTY_WORDS]
-    axis = _axis(Quantity.ACC, words[left[0]]) if len(left) == 1 else ""
+    """What the unit gives of a name that has an axis and no known word: "x-axis (deg/s)", "IMU 1 y [g]"."""
+    axes = [(k, axis) for k, word in enumerate(words) if (axis := _axis(Quantity.ACC, word))]
     quantity = next((one for one in (Quantity.ACC, Quantity.GYR) if unit_of(one, unit)), None)
-    return {left[0]: (quantity, axis)} if axis and quantity is not None else {}
+    if len(axes) != 1 or quantity is None or any(word.lower() in NOT_FELT for word in words):
+        return {}
+    return {axes[0][0]: (quantity, axes[0][1])}
 
 
 def _elapsed_unit(words: Sequence[str], unit: str) -> str:
     """The unit of time of a name that has no other word for a quantity: "elapsed (s)", "seconds_elapsed"."""
     left = [word for word in words if word.lower() not in EMPTY_WORDS]
+    if len(words) == 1 and words[0].lower() in ALONE:
+        return unit_of(Quantity.TIME, words[0])
     if len(left) == len(words) or len(left) > 1:
         return ""
     return unit_of(Quantity.TIME, left[0] if left else unit)
@@ -231,7 +239,11 @@ def half_columns(
     `of_file`: what columns hold that name nothing but an axis. Raises FileRefusedError for two columns alike.
     """
     found = _columns_by_sensor(names, units or {}, of_file)
-    return () if any(one.acc and one.gyr for one in found) else found
+    if any(one.acc and one.gyr for one in found):
+        return ()
+    for gyr in [one for one in found if one.gyr]:
+        _refuse_both([acc.acc[0] for acc in _other_halves(gyr, found)])
+    return found
 
 
 def quantity_of_file(stem: str) -> Quantity | None:
@@ -300,7 +312,41 @@ def _columns_by_sensor(
                 next(iter(places.get(("", Quantity.COUNTER), {}).get("", [])), ""),
             )
         )
-    return tuple(sensors)
+    return tuple(_put_together(sensors))
+
+
+def _put_together(sensors: Sequence[SensorColumns]) -> list[SensorColumns]:
+    """Make one sensor of two halves of which one has more words in its name: "Total acc x", "gyro x"."""
+    found = list(sensors)
+    for acc in [one for one in sensors if one.acc and not one.gyr]:
+        (gyr, *more) = _other_halves(acc, sensors) or [acc]
+        if (
+            gyr is acc
+            or more
+            or len(_other_halves(gyr, sensors)) > 1
+            or (acc.time != gyr.time and acc.time and gyr.time)
+        ):
+            continue
+        whole = replace(
+            gyr,
+            sensor=min(acc.sensor, gyr.sensor, key=len),
+            acc=acc.acc,
+            mag=gyr.mag or acc.mag,
+            quat=gyr.quat or acc.quat,
+            time=gyr.time or acc.time,
+        )
+        found = [whole if one is gyr else one for one in found if one is not acc]
+    return found
+
+
+def _other_halves(half: SensorColumns, sensors: Sequence[SensorColumns]) -> list[SensorColumns]:
+    """Halves of the other quantity whose name is this one's with more words, or with fewer."""
+
+    def words(one: SensorColumns) -> set[str]:
+        return {word.casefold() for word in WORD.findall(one.sensor)}
+
+    others = [one for one in sensors if not (one.acc and one.gyr) and bool(one.acc) != bool(half.acc)]
+    return [one for one in others if words(half) <= words(one) or words(half) >= words(one)]
 
 
 def _one_time(
@@ -314,6 +360,13 @@ def _one_time(
         if reported:
             return (shared or reported)[0]
     return ""
+
+
+def time_among(names: Sequence[str], units: Mapping[str, str]) -> str:
+    """The column of times by its name, of all sensors; empty where there is none."""
+    meant = {name: meaning for name in names if (meaning := meaning_of(name, units.get(name, ""))) is not None}
+    times = [name for name, one in meant.items() if one.quantity is Quantity.TIME and not one.sensor]
+    return _one_time({("", Quantity.TIME): {"": times}}, meant, "") if times else ""
 
 
 def _refuse_both(names: Sequence[str]) -> None:
@@ -383,4 +436,9 @@ def _plain_unit(text: str) -> str:
 def listed(names: Sequence[str]) -> str:
     """Names as they can stand in a sentence."""
     more = f" (+{len(names) - MOST_NAMES})" if len(names) > MOST_NAMES else ""
-    return ", ".join(name[:40] for name in names[:MOST_NAMES]) + more
+    return ", ".join(map(_short, names[:MOST_NAMES])) + more
+
+
+def _short(name: str) -> str:
+    """A long name without its middle: axis and unit are at its end."""
+    return name if len(name) <= LONGEST_LISTED else f"{name[: LONGEST_LISTED - 21]}…{name[-20:]}"

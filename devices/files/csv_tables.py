@@ -22,6 +22,7 @@ from devices.files.column_names import (
     plain_name,
     quantity_of_file,
     sensor_columns,
+    time_among,
     without_quantity,
 )
 from devices.files.named_columns import NAME_THEM, trial_of_tables
@@ -143,7 +144,7 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
         place=table.place,
         units=units,
         rate_hz=choices.rate_hz or (None if time else layout.rate_hz),
-        time_s=seconds_of(table.texts[time].tolist(), time, where, table.place) if is_text else None,
+        time_s=seconds_of(_texts(table, time), time, where, table.place) if is_text else None,
         time=time or "time",
         left_out=[name for name in layout.names if name not in numeric and name != sensor],
         findings=table.findings,
@@ -153,9 +154,12 @@ def tables_of(path: Path, choices: TableChoices = NO_CHOICES, most_bytes: int = 
 
 
 def _sensors_in(layout: TableLayout, path: Path) -> tuple[SensorColumns, ...]:
-    """The sensors by the names of the columns, else their halves."""
-    whole = sensor_columns(layout.names, layout.units)
-    return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
+    """The sensors by the names of the columns, else their halves; raises FileRefusedError for two columns alike."""
+    try:
+        whole = sensor_columns(layout.names, layout.units)
+        return whole or half_columns(layout.names, layout.units, quantity_of_file(path.stem))
+    except FileRefusedError as refusal:
+        raise FileRefusedError.stated_elsewhere(path.name, refusal.what, refusal.remedy, refusal.values) from None
 
 
 def columns_in(layout: TableLayout, choices: TableChoices) -> tuple[SensorColumns, ...]:
@@ -168,7 +172,13 @@ def _stated_columns(layout: TableLayout, choices: TableChoices, where: str) -> S
     """The columns of the one sensor that somebody states; None where nobody does."""
     if not choices.acc and not choices.gyr:
         return None
-    by_name = next(iter(_sensors_in(layout, layout.path)), SensorColumns("", (), ()))
+    by_name = SensorColumns("", (), ())
+    try:
+        by_name = next(iter(_sensors_in(layout, layout.path)), by_name)
+    except FileRefusedError:  # of two columns alike, between which somebody chooses
+        if not choices.acc or not choices.gyr:
+            raise
+        by_name = replace(by_name, time=time_among(layout.names, layout.units))
     acc, gyr = (
         () if stated == (NONE,) else _three(layout, stated, where) if stated else named
         for stated, named in ((choices.acc, by_name.acc), (choices.gyr, by_name.gyr))
@@ -262,7 +272,7 @@ def _stated_units(found: Sequence[SensorColumns], time: str, choices: TableChoic
 
 def _by_sensor(table: NamedTable, read: Table, column: str, *, is_stated: bool) -> list[NamedTable]:
     """The rows of each sensor as a table of its own, where the column names a few; raises FileRefusedError."""
-    names = np.array([str(text).strip() for text in read.texts[column]])
+    names = np.array([str(text).strip() for text in _texts(read, column)])
     known = [str(name) for name in dict.fromkeys(names.tolist()) if name and name.lower() not in NO_VALUE]
     if not 0 < len(known) <= MOST_SENSORS:
         if is_stated:
@@ -275,6 +285,11 @@ def _by_sensor(table: NamedTable, read: Table, column: str, *, is_stated: bool) 
             )
         return [table]
     return [_rows_of(table, np.flatnonzero(names == name), name) for name in known]
+
+
+def _texts(table: Table, column: str) -> list[str]:
+    """The cells of a column, of which `read_rows` leaves out one without name and content."""
+    return list(table.texts[column]) if column in table.texts else [""] * table.rows
 
 
 def _rows_of(table: NamedTable, rows: NDArray[np.intp], name: str) -> NamedTable:

@@ -27,7 +27,7 @@ from devices.files.column_names import (
     without_quantity,
 )
 from devices.files.halves import OPEN, Half, joined, unit_by_gravity
-from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size
+from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size, rate_unit_by_gravity
 from devices.files.named_table import NamedTable
 from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
@@ -35,8 +35,13 @@ from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile, read_
 
 GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels, by which a unit is found
 LEAST_DOWN = 0.3  # of the size of the mean, where a unit is found by size: acceleration without gravity has none
+MOST_WITH_DIGITS = 1000.0
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
+MOST_FELT = GRAVITY_M_S2[1] / min(FORCE_UNITS.values())  # as a number, in the smallest unit
+NO_GRAVITY = "the median of the acceleration {names} is {middle}, which does not match gravity in {units}"
+FREE = "Export acceleration in m/s2 with gravity, not free or linear acceleration"
+COUNTS = "Export acceleration in m/s2, not the counts of the sensor's converter"
 NAME_THEM = (
     "Name the columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with units as in acc_x_m_s2 "
     "and gyr_x_deg_s; with several sensors left_shank_acc_x and so on"
@@ -155,6 +160,8 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     acc = acc * FORCE_UNITS[acc_unit]
     if not gyr_unit and named.acc:
         gyr_unit = unit_by_gravity(stamps.time_s, acc[kept], gyr[kept], table.where, listed(named.gyr), findings)
+    elif named.acc:
+        _refuse_other_unit(table, named, gyr_unit, rate_unit_by_gravity(stamps.time_s, acc[kept], gyr[kept]))
     gyr = gyr * RATE_UNITS[gyr_unit or OPEN]
     q = _orientation(_matrix(table, named.quat, lengths)[kept], acc[kept]) if named.quat else None
     if named.quat and q is None:
@@ -199,27 +206,27 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
             "Correct the unit, or export the data again in m/s2",
             names=listed(named.acc),
             reported=reported,
-            middle=f"{middle:.3g}",
+            middle=_figure(middle),
             unit=fits[0],
         )
     if not fits:
-        raise FileRefusedError(
-            table.where,
-            "the median of the acceleration {names} is {middle}, which does not match gravity in {units}",
-            "Export acceleration in m/s2 with gravity, not free or linear acceleration",
-            names=listed(named.acc),
-            middle=f"{middle:.3g}",
-            units=reported or ", ".join(FORCE_UNITS),
-        )
+        names, shown, units = listed(named.acc), _figure(middle), reported or ", ".join(FORCE_UNITS)
+        if middle > MOST_FELT:
+            raise FileRefusedError(table.where, NO_GRAVITY, COUNTS, names=names, middle=shown, units=units)
+        raise FileRefusedError(table.where, NO_GRAVITY, FREE, names=names, middle=shown, units=units)
     if float(np.linalg.norm(np.nanmean(acc, axis=0))) < LEAST_DOWN * middle:
         raise FileRefusedError(
             table.where,
             "the acceleration {names} points nowhere in the mean, as if gravity had been removed",
-            "Export acceleration in m/s2 with gravity, not free or linear acceleration",
+            FREE,
             names=listed(named.acc),
         )
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.acc), "unit": fits[0]}))
     return fits[0]
+
+
+def _figure(value: float) -> str:
+    return f"{value:.0f}" if value >= MOST_WITH_DIGITS else f"{value:.3g}"
 
 
 def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings: list[Finding]) -> str:
@@ -236,7 +243,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
                 "Correct the unit, or export the angular rates again in rad/s",
                 names=listed(named.gyr),
                 reported=reported,
-                largest=f"{largest:.3g}",
+                largest=_figure(largest),
             )
         return reported
     if not len(rates):
@@ -245,6 +252,19 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
         return ""
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.gyr), "unit": "deg/s"}))
     return "deg/s"
+
+
+def _refuse_other_unit(table: NamedTable, named: SensorColumns, reported: str, found: str) -> None:
+    """Refuse rates in deg/s that turn gravity as rad/s do; raises FileRefusedError. Others are too fast by size."""
+    if (reported, found) == ("deg/s", "rad/s"):
+        raise FileRefusedError(
+            table.where,
+            "the angular rates {names} are labelled {reported}, but gravity turns as if they were in {unit}",
+            "Correct the unit, or export the angular rates again in rad/s",
+            names=listed(named.gyr),
+            reported=reported,
+            unit=found,
+        )
 
 
 def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:

@@ -16,7 +16,8 @@ from devices.files.refusal import FileRefusedError, quoted
 from devices.files.straight_times import LATE_S, straight_times
 from devices.files.table_choices import COUNT
 
-LIKELY_HZ = (20.0, 2000.0)  # rates by which a unit of time is found: no two units leave the same steps
+LIKELY_HZ = (20.0, 2000.0)  # rates by which a unit of time is found: no two of these leave the same steps
+OF_CLOCKS = ("s", "ms", "us", "ns", "d")
 POSSIBLE_HZ = (1.0, 20_000.0)
 WRAPS = tuple(float(1 << bits) for bits in (8, 16, 24, 32))
 MOST_DOUBLED = 0.2  # of the samples: beyond, samples come in batches that share a stamp
@@ -43,7 +44,7 @@ def stamps_of(
     reported_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
     if table.time_s is not None:
-        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, f"{table.time} [s]"
+        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, table.time), 1.0, f"{table.time} [s]"
     elif named.time and len(table.columns[named.time]) == len(is_there):
         values = _unwrapped(table, table.columns[named.time][rows], rows, named.time)
         meaning = meaning_of(named.time, table.units.get(named.time, ""))
@@ -195,6 +196,8 @@ def _time_unit(
     """A unit of time, or COUNT where samples are counted."""
     step = np.diff(values)
     usual = float(np.median(step[step > 0])) if (step > 0).any() else np.nan
+    if len(step) and float(np.mean(step == 0)) > MOST_DOUBLED:
+        usual = max(float(values[-1] - values[0]), 0.0) / len(step) or np.nan  # samples of a batch share a stamp
     if reported or not np.isfinite(usual):
         return reported or "s"
     if reported_hz is not None:
@@ -202,7 +205,7 @@ def _time_unit(
         fits = fits or ([COUNT] if usual == 1.0 else [])
     else:
         least, most = LIKELY_HZ
-        fits = [unit for unit, scale in SECONDS.items() if least <= 1.0 / (usual * scale) <= most]
+        fits = [unit for unit in OF_CLOCKS if least <= 1.0 / (usual * SECONDS[unit]) <= most]
         fits = [] if usual == 1.0 else fits  # it may be a count, and it may be milliseconds
     if not fits:
         raise FileRefusedError(

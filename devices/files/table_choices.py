@@ -13,7 +13,7 @@ from devices.files.refusal import FileRefusedError
 
 NONE = "none"  # in place of a column: the table has no such one
 COUNT, CLOCK = "count", "clock"  # units of times: samples counted, and texts such as 23:59:59.990
-TIME_UNITS = ("s", "ms", "us", "ns", "d", COUNT, CLOCK)
+TIME_UNITS = ("s", "ms", "us", "ns", "min", "h", "d", COUNT, CLOCK)
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "space": " "}
 
 
@@ -66,6 +66,7 @@ class TablePreview:
 
     `lines`: the first of the file. `choices`: what has to be stated for the file to be read so: what somebody stated,
     and what was found by values alone. `found`: every choice as it is in force. `refusal`: why it cannot be read so.
+    `unread`: why some of its sensors cannot.
     """
 
     fingerprint: str
@@ -78,6 +79,7 @@ class TablePreview:
     is_by_values: bool
     is_cut: bool
     refusal: FileRefusedError | None
+    unread: tuple[FileRefusedError, ...] = ()
 
 
 def by_place(choices: TableChoices, names: Sequence[str]) -> TableChoices:

@@ -15,11 +15,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO
 
-from devices.files.column_names import is_unit
+from devices.files.column_names import Quantity, is_unit, meaning_of, unit_of, without_brackets
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.table_choices import NO_CHOICES, SEPARATORS, TableChoices
 from devices.files.table_header import CORRECT_IT, SEPARATOR_LINE, Open, TableHeader, decimal_of, names_of
-from devices.files.tables import NO_VALUE, is_value
+from devices.files.tables import COMMENT, NO_VALUE, is_value
 from devices.files.text_files import CONTROLS, encoding_of, open_text
 
 HEAD_BYTES = 262_144
@@ -27,7 +27,10 @@ MOST_LINES = 400  # by which a layout is found
 MOST_COLUMNS = 2000  # dozens of sensors, with all that each may give
 LEAST_NUMBERS = 3  # of a row: three axes
 FIRST_ROWS = 20
-COMMENT = "#"
+JUDGED_LINES, JUDGED_CELLS = 20, 100  # above the first row, among which is the header
+FEW_THOUSANDS = 3  # different numbers with such a sign, and as many without one
+WHOLE = re.compile(r"[+-]?\d{1,3}", re.ASCII)
+KEY = re.compile(r"[^\W\d][^=:]*[=:]")  # a first cell "Rate:" or "TopValue=": the line describes the file
 NAMELESS = "nameless "  # begins the fingerprint of what has no header
 BLANKS = re.compile(rb"[ \t]+")
 RATE = re.compile(
@@ -109,7 +112,7 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES, most_b
     rows = [row for line, row in zip(lines[first:], cells[first:], strict=True) if _is_content(line)]
     width = Counter(map(len, rows)).most_common(1)[0][0]
     at, units_at = _header_place(lines, cells, first, width, choices.header_line)
-    names = list(cells[at]) if at is not None else []
+    names = _with_groups(cells, at)
     _refuse_divided_decimals(where, lines[first].number, delimiter, names, rows[0])
     while len(names) > width and not names[-1]:
         names.pop()  # a separator follows the last name, and no last cell
@@ -123,6 +126,8 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES, most_b
         )
     names = names_of([*names, *[""] * (width - len(names))])
     unique = _all_different(names)
+    decimal = choices.decimal or decimal_of(rows[:FIRST_ROWS])
+    _refuse_thousands(where, decimal, unique, rows)
     units = dict(zip(unique, cells[units_at], strict=False)) if units_at is not None else {}
     before = tuple(line.text for line in lines[: first if at is None else at])
     header = TableHeader(
@@ -130,7 +135,7 @@ def layout_of(path: Path, where: str, choices: TableChoices = NO_CHOICES, most_b
         delimiter=delimiter,
         line=lines[first - 1].number if first else 0,
         start=lines[first - 1].end if first else 0,
-        decimal=choices.decimal or decimal_of(rows[:FIRST_ROWS]),
+        decimal=decimal,
         before=before,
     )
     return TableLayout(
@@ -237,6 +242,7 @@ def _first_row(lines: Sequence[_HeadLine], cells: Sequence[Sequence[str]], state
         at
         for at, line in enumerate(lines)
         if _is_content(line) and sum(map(_is_number, cells[at])) >= LEAST_NUMBERS and line.number > (stated_line or 0)
+        if not KEY.fullmatch(cells[at][0])
     ]
     widths = Counter(len(cells[at]) for at in known)
     if not widths:
@@ -254,12 +260,30 @@ def _header_place(
         at = next((at for at in above if lines[at].number == stated_line), None)
         return at, next((k for k in above if at is not None and k > at and _are_units(cells[k])), None)
     wide = [at for at in above if abs(len(cells[at]) - width) <= 1 and sum(map(_is_number, cells[at])) < LEAST_NUMBERS]
+    full = [at for at in wide[-JUDGED_LINES:] if 2 * sum(map(bool, cells[at])) > width]  # not the names of groups
+    meant = {at: sum(meaning_of(cell) is not None for cell in cells[at][:JUDGED_CELLS]) for at in full}
+    at = max(meant, key=lambda at: (meant[at], at), default=None)
+    if at is not None and meant[at] >= LEAST_NUMBERS:
+        return at, next((k for k in wide if k > at and _are_units(cells[k])), None)
     if len(wide) > 1 and _are_units(cells[wide[-1]]):
         return wide[-2], wide[-1]
     if wide:
         return wide[-1], None
     half = above[-1:] if above and abs(2 * len(cells[above[-1]]) - width) <= 1 else []
     return (half[0] if half else None), None
+
+
+def _with_groups(cells: Sequence[Sequence[str]], at: int | None) -> list[str]:
+    """The names in a header; where some are alike, with what the line above writes once for several columns."""
+    names = list(cells[at]) if at is not None else []
+    groups = cells[at - 1] if at else []
+    if len(set(names)) == len(names) or not any(groups) or len(groups) > len(names) or any(map(is_value, groups)):
+        return names
+    held, grouped = "", list[str]()
+    for place, name in enumerate(names):
+        held = groups[place] if place < len(groups) and groups[place] else held
+        grouped.append(f"{held} {name}".strip())
+    return grouped if len(set(grouped)) == len(grouped) else names
 
 
 def _are_units(cells: Sequence[str]) -> bool:
@@ -276,6 +300,24 @@ def _refuse_divided_decimals(where: str, line: int, delimiter: str, names: Seque
             count=len(row),
             whole=len(names),
         )
+
+
+def _refuse_thousands(where: str, decimal: str, names: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Refuse whole numbers with a sign between thousands, which would be read as decimals; raises FileRefusedError."""
+    thousands = re.compile(rf"[+-]?[1-9]\d{{0,2}}(?:\{decimal}\d{{3}})+", re.ASCII)
+    for place, name in enumerate(names):
+        cells = [row[place] for row in rows if place < len(row)]
+        signed = {cell for cell in cells if decimal in cell}
+        if len(signed) < FEW_THOUSANDS or not all(map(thousands.fullmatch, signed)):
+            continue
+        if len(set(filter(WHOLE.fullmatch, cells))) >= FEW_THOUSANDS:
+            raise FileRefusedError(
+                where,
+                "whole numbers in column {name} have a sign between thousands, such as {cell}",
+                "Export the file again without signs between thousands",
+                name=quoted(name),
+                cell=quoted(min(signed)),
+            )
 
 
 def _all_different(names: Sequence[str]) -> list[str]:
@@ -301,4 +343,11 @@ def refuse_twice(layout: TableLayout, where: str) -> None:
     """Refuse a header that gives a name twice; raises FileRefusedError."""
     if layout.twice:
         here = f"{where}, line {layout.header_line}"
+        if unit_of(Quantity.TIME, without_brackets(layout.twice)[1]):
+            raise FileRefusedError(
+                here,
+                "column {name} appears twice: parts of the table have times of their own",
+                "Export accelerometer and gyroscope of each sensor with one column of times",
+                name=quoted(layout.twice),
+            )
         raise FileRefusedError(here, "column {name} appears twice", CORRECT_IT, name=quoted(layout.twice))

@@ -13,7 +13,7 @@ import numpy as np
 from core.findings import Finding
 from core.samples import FloatArray, ImuBlock
 from devices.drivers.csv_serial import FORCE_UNITS
-from devices.files.column_names import SensorColumns
+from devices.files.column_names import SensorColumns, meaning_of
 from devices.files.csv_tables import columns_in, is_text_time, sensor_column, tables_of, time_column
 from devices.files.magnitudes import middle_size
 from devices.files.named_columns import GRAVITY_M_S2, LEAST_DOWN, halves_of_table, sensors_of_table
@@ -44,11 +44,13 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         )
     choices = _with_guesses(layout, stated)
     sensors: list[PreviewedSensor] = []
+    unread: list[FileRefusedError] = []
     why: FileRefusedError | None = None
     try:
         for table in tables_of(path, choices, PREVIEW_BYTES):
             halves = [half.sensor for half in halves_of_table(table, choices.rate_hz)]
-            read = halves or sensors_of_table(table, choices.rate_hz)[0]
+            read, refused = (halves, []) if halves else sensors_of_table(table, choices.rate_hz)
+            unread += [one.refusal for one in refused]
             sensors += [_beginning(one.name, one.block, one.info.rate_hz, one.findings) for one in read]
     except FileRefusedError as refusal:
         why, sensors = refusal, []
@@ -64,6 +66,7 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         is_by_values=(choices.acc, choices.gyr) != (stated.acc, stated.gyr),
         is_cut=path.stat().st_size > PREVIEW_BYTES,
         refusal=why,
+        unread=() if why is not None else tuple(unread),
     )
 
 
@@ -93,21 +96,35 @@ def _found(layout: TableLayout, choices: TableChoices, sensors: Sequence[Preview
     unit = CLOCK if time and is_text_time(layout, time, choices) else choices.time_unit
     stated = str(numbers.get("time", ""))
     if not unit and time:
-        unit = stated[stated.rfind("[") + 1 : -1] if stated.endswith("]") else COUNT if sensors else ""
+        unit = (
+            stated[stated.rfind("[") + 1 : -1]
+            if stated.endswith("]")
+            else COUNT
+            if sensors
+            else _named_unit(layout, time)
+        )
     return TableChoices(
         encoding=layout.encoding.removesuffix("-le").removesuffix("-be"),
         header_line=layout.header_line,
         separator=layout.header.delimiter,
         decimal=layout.header.decimal,
         acc=one.acc or choices.acc,
-        acc_unit=choices.acc_unit or (str(numbers.get("acc_unit", "")) if one.acc else ""),
+        acc_unit=choices.acc_unit
+        or (str(numbers.get("acc_unit") or _named_unit(layout, one.acc[0])) if one.acc else ""),
         gyr=one.gyr or choices.gyr,
-        gyr_unit=choices.gyr_unit or (str(numbers.get("gyr_unit", "")) if one.gyr else ""),
+        gyr_unit=choices.gyr_unit
+        or (str(numbers.get("gyr_unit") or _named_unit(layout, one.gyr[0])) if one.gyr else ""),
         time=time or NONE,
         time_unit=unit,
         sensor=sensor or NONE,
         rate_hz=choices.rate_hz or layout.rate_hz,
     )
+
+
+def _named_unit(layout: TableLayout, name: str) -> str:
+    """The unit in a column's name or below it, also where the table is refused."""
+    meaning = meaning_of(name, layout.units.get(name, ""))
+    return meaning.unit if meaning is not None else ""
 
 
 def _understood(sensors: Sequence[PreviewedSensor]) -> Mapping[str, float | int | str]:

@@ -34,9 +34,11 @@ from devices.files.text_files import UTF_8, open_text
 NUMBER = re.compile(  # what fits one part fits no other: a cell of a million digits is looked at once
     r"\s*+[+-]?((\d++(\.\d*+)?|\.\d++)(e[+-]?\d++)?|nan|inf(inity)?)?\s*+", re.IGNORECASE | re.ASCII
 )
-NO_VALUE = ("na", "n/a", "#n/a", "nan", "null", "none", "-", "--")  # what programs write for nothing
+NO_VALUE = ("na", "n/a", "n.a.", "#n/a", "<na>", "nan", "nat", "null", "none", "-", "--", "1.#qnan", "-1.#ind")
 EMPTY_CELLS = [" " * n for n in range(9)]  # Arrow compares whole cells, and a blank or two is still nothing
 EMPTY_CELLS += [blank + cell for word in NO_VALUE for cell in (word, word.upper(), word.title()) for blank in ("", " ")]
+EMPTY_CELLS.append("NaT")  # of pandas
+COMMENT = "#"  # begins lines that are no rows
 MOST_CUT = 8  # incomplete rows at the end; more, and the file is another
 
 
@@ -297,6 +299,9 @@ def _dropped_lines(
             text = line.decode()
         except UnicodeDecodeError as error:
             raise FileRefusedError(here, "the file is not UTF-8 text", COPY_AGAIN) from error
+        if not is_ours and text.startswith(COMMENT):
+            dropped.add(number)
+            continue
         if text.count('"') % 2:
             raise FileRefusedError(here, "a quotation mark is not closed", CORRECT_IT)
         try:

@@ -30,6 +30,7 @@ def is_time(cell: str) -> bool:
 def seconds_of(cells: Sequence[str], name: str, where: str, place: Callable[[int], str]) -> FloatArray:
     """Seconds (n,) of a column of times, NaN where empty, going on over midnight; raises FileRefusedError."""
     found = np.full(len(cells), np.nan)
+    parts = [""] * len(cells)
     turn_s, is_dated = DAY_S, False
     for row, cell in enumerate(map(str, cells)):
         text = cell.strip()
@@ -46,9 +47,11 @@ def seconds_of(cells: Sequence[str], name: str, where: str, place: Callable[[int
             )
         days = _days(time["date"] or "")
         is_dated = is_dated or days is not None
-        found[row] = (days or 0) * DAY_S + _seconds(time)
+        found[row] = (days or 0) * DAY_S + _whole_seconds(time)
+        parts[row] = time["part"] or ""
         if time["hour"] is None:
             turn_s = HOUR_S  # a spreadsheet shows no hours
+    found += _fractions(parts, found)
     if is_dated:
         return found
     known = np.flatnonzero(np.isfinite(found))
@@ -66,9 +69,24 @@ def _days(text: str) -> int | None:
         return None
 
 
-def _seconds(time: re.Match[str]) -> float:
+def _fractions(parts: Sequence[str], whole_s: FloatArray) -> FloatArray:
+    """Fractions of seconds (n,): decimals, or a count of thousandths without zeros before it, where these run on."""
+    decimal = np.array([int(part) / 10 ** len(part) if part else 0.0 for part in parts])
+    widths = {len(part) for part in parts if part}
+    if len(widths) < 2:
+        return decimal
+    digits = 3 * -(-max(widths) // 3)  # milliseconds, microseconds, nanoseconds
+    counted = np.array([int(part) / 10**digits if part else 0.0 for part in parts])
+    back, back_counted = (_steps_back(whole_s + fraction) for fraction in (decimal, counted))
+    return counted if back_counted < back else decimal
+
+
+def _steps_back(time_s: FloatArray) -> int:
+    return int(np.sum(np.diff(time_s[np.isfinite(time_s)]) < 0.0))
+
+
+def _whole_seconds(time: re.Match[str]) -> float:
     hour = int(time["hour"] or 0)
     if time["half"]:
         hour = hour % 12 + (12 if time["half"][0].lower() == "p" else 0)
-    part = int(time["part"]) / 10 ** len(time["part"]) if time["part"] else 0.0
-    return hour * HOUR_S + int(time["minute"]) * 60.0 + int(time["second"]) + part
+    return hour * HOUR_S + int(time["minute"]) * 60.0 + int(time["second"])

@@ -349,9 +349,9 @@ class Importing(LongWork):
         self.imported.emit(None)
 
 
-def _why(path: Path, refused: Sequence[FileRefusedError]) -> str:
-    """Why a file was not read; empty where that is not what was refused."""
-    return next((refused_line(one) for one in refused if path.name in one.where), "")
+def _why(path: Path, refused: Sequence[FileRefusedError]) -> FileRefusedError | None:
+    """Why a file was not read; None where that is not what was refused."""
+    return next((one for one in refused if path.name in one.where), None)
 
 
 def _named(name: str) -> str:

@@ -30,7 +30,7 @@ class OpenTable:
     """A table to be explained; `why`: it was not recognised."""
 
     path: Path
-    why: str = ""
+    why: FileRefusedError | None = None
 
 
 class Explaining(QObject):

@@ -19,8 +19,11 @@ from app.home.importing.table_words import (
     GYR_UNIT_WORDS,
     SEPARATOR_WORDS,
     TIME_UNIT_WORDS,
+    column_words,
     findings_of,
+    refused_line,
     stated_of,
+    why_shown,
 )
 from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
@@ -36,6 +39,7 @@ from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.findings import sentence
 from app.wording.translation import tr
+from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import COUNT, NO_CHOICES, NONE, TableChoices, TablePreview
 
 MOST_SHOWN_LINES = 20  # of the beginning, to choose the header from
@@ -54,6 +58,7 @@ class TableForm(QWidget):
         super().__init__()
         self.stated = NO_CHOICES
         self._preview: TablePreview | None = None
+        self._refusal: FileRefusedError | None = None  # why it was not recognised
         self.encoding = self._choice(tr("Encoding"), "encoding")
         self.header_line = self._choice(tr("Line with the names"), "header_line")
         self.separator = self._choice(tr("Separator"), "separator")
@@ -95,26 +100,30 @@ class TableForm(QWidget):
         open_ones = (one for one in choices if one.isEnabled() and one.currentData() == "")
         next(open_ones, self.encoding).setFocus()
 
-    def begin(self, why: str, stated: TableChoices) -> None:
+    def begin(self, why: FileRefusedError | None, stated: TableChoices) -> None:
         """Begin with another table, of which this is known; `why`: it was not recognised."""
-        self.stated, self._preview = stated, None
-        self._why.setText(why)
-        self._why.setVisible(bool(why))
+        self.stated, self._preview, self._refusal = stated, None, why
+        self._why.hide()
         self.notice.show_message(None, "")
 
     def show_preview(self, preview: TablePreview) -> None:
         """Show how the table is read with what is stated."""
         self._preview = preview
         self._show_choices(preview)
+        self._why.setText(column_words(why_shown(self._refusal, preview)))
+        self._why.setVisible(bool(self._why.text()))
         stated = stated_of(preview)
         icon = Icon.WARNING if stated.is_caution else Icon.CHECK
-        self.notice.show_message(icon, stated.what, stated.then, is_caution=stated.is_caution)
+        what, then = column_words(stated.what), column_words(stated.then)
+        self.notice.show_message(icon, what, then, is_caution=stated.is_caution)
         names = [(one.name, number) for number, one in enumerate(preview.sensors)]
         self.shown.offer(names, self.shown.currentData())
         for part in (self._shown_label, self.shown):
             part.setVisible(len(names) > 1)
         self._show_curves()
-        self._noticed.setText("\n".join(map(sentence, findings_of(preview))))
+        self._noticed.setText(
+            column_words("\n".join([*map(refused_line, preview.unread), *map(sentence, findings_of(preview))]))
+        )
         self._noticed.setVisible(bool(self._noticed.text()))
         self._show_rows(preview)
 
@@ -190,7 +199,7 @@ class TableForm(QWidget):
             (self.gyr_unit, GYR_UNIT_WORDS, found.gyr_unit),
         ):
             _offer(choice, [(tr(word), key) for key, word in words.items()], value)
-        columns = [(name, name) for name in preview.columns]
+        columns = [(column_words(name), name) for name in preview.columns]
         none = (tr("not in this file"), NONE)
         _offer(self.time, [none, *columns], found.time)
         _offer(self.sensor, [(tr("one sensor"), NONE), *columns], found.sensor)
@@ -218,7 +227,7 @@ class TableForm(QWidget):
     def _show_rows(self, preview: TablePreview) -> None:
         roles = _roles(preview.found)
         names = preview.columns[:MOST_SHOWN_COLUMNS]
-        heads = [TextCell(_short(name), roles.get(name, ""), weight=SEMIBOLD) for name in names]
+        heads = [TextCell(_short(column_words(name)), roles.get(name, ""), weight=SEMIBOLD) for name in names]
         rows = [
             TableRow(tuple(TextCell(_short(row[k]) if k < len(row) else "") for k in range(len(names))))
             for row in preview.rows

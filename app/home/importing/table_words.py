@@ -1,5 +1,6 @@
 """What is stated about a table that nobody knows, and whether it can be read so."""
 
+import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -10,8 +11,12 @@ from core.findings import Finding
 from core.samples import FloatArray
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import CLOCK, COUNT, SEPARATORS, PreviewedSensor, TablePreview
+from devices.files.table_header import UNNAMED
 from devices.files.text_files import UTF_8, UTF_16, WINDOWS
 
+OPTIONS = re.compile(r" \(--[^()]*\)")
+LINE = re.compile(r", line (\d+)$")
+NAMELESS = re.compile(rf"\b{UNNAMED} (\d+)\b")
 STILL = 8.5, 11.0  # m/s²: what the middle of a recording is near to
 ENCODING_WORDS: Mapping[str, str] = {UTF_8: "UTF-8", UTF_16: "UTF-16", WINDOWS: "Windows-1252"}
 SEPARATOR_WORDS: Mapping[str, str] = {
@@ -27,6 +32,8 @@ TIME_UNIT_WORDS: Mapping[str, str] = {
     "ms": later("milliseconds"),
     "us": later("microseconds"),
     "ns": later("nanoseconds"),
+    "min": later("minutes"),
+    "h": later("hours"),
     "d": later("days"),
     COUNT: later("samples counted"),
     CLOCK: later("time of day or date"),
@@ -61,17 +68,34 @@ def stated_of(preview: TablePreview) -> TableStatement:
 
 
 def refused(refusal: FileRefusedError) -> tuple[str, str]:
-    """Two sentences: what is wrong and what to do."""
-    return (
-        f"{capitalised(filled(refusal.what, refusal.values))}.",
-        f"{filled(refusal.remedy, refusal.values)}.",
-    )
+    """Two sentences: what is wrong, in which line, and what to do."""
+    what = capitalised(filled(refusal.what, refusal.values))
+    line = LINE.search(refusal.where)
+    if line is not None:
+        what = tr("Line {number}: {what}").format(number=line[1], what=filled(refusal.what, refusal.values))
+    return f"{what}.", f"{_remedy(refusal)}."
+
+
+def why_shown(why: FileRefusedError | None, preview: TablePreview) -> str:
+    """Why a table was not recognised, where that is not what is wrong with it anyway; what to do is below it."""
+    if why is None or (preview.refusal is not None and preview.refusal.what == why.what):
+        return ""
+    return refused(why)[0]
+
+
+def column_words(text: str) -> str:
+    """A text with the columns that have no name in the user's language."""
+    return NAMELESS.sub(lambda found: tr("column {number}").format(number=found[1]), text)
 
 
 def refused_line(refusal: FileRefusedError) -> str:
     """Where, what is wrong, and what to do in one line: one of several that could not be read."""
-    stated = f"{filled(refusal.what, refusal.values)}. {filled(refusal.remedy, refusal.values)}."
-    return f"{refusal.where}: {stated}"
+    return f"{refusal.where}: {filled(refusal.what, refusal.values)}. {_remedy(refusal)}."
+
+
+def _remedy(refusal: FileRefusedError) -> str:
+    """What to do, without the options of the command line."""
+    return OPTIONS.sub("", filled(refusal.remedy, refusal.values))
 
 
 def findings_of(preview: TablePreview) -> tuple[Finding, ...]:
@@ -107,6 +131,8 @@ def _to_look_at(preview: TablePreview) -> tuple[str, bool]:
         return tr("This file has no acceleration; it must be in a second file of this sensor."), True
     if not STILL[0] < felt < STILL[1]:
         return tr("Gravity should be about 9.8 m/s². Check the columns and unit of acceleration."), True
+    if preview.unread:
+        return tr("Other sensors in this table cannot be read. The reasons are below the curves."), True
     if preview.is_by_values:
         return tr("The columns were found by their values alone. Check them."), True
     return tr("Compare the curves with what you know of the recording."), False

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from app.cli import arguments
 from app.cli.main import main
@@ -12,7 +13,7 @@ from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files import table_choices, text_files
 from devices.files.session_folder import read_session
 from tests.clock_files import ALL, TIME_S, pair, restarted, without
-from tests.devices.files.test_public_layouts import LEFT, no_header, rows_of, write
+from tests.devices.files.test_public_layouts import LEFT, ngimu, no_header, rows_of, write, ximu
 
 BY_HAND = ["--header-line", "0", "--acc", "2,3,4", "--gyr", "5,6,7", "--gyr-unit", "rad/s", "--time", "1"]
 
@@ -34,6 +35,17 @@ def test_a_table_without_names_is_read_as_stated(tmp_path: Path, capsys: pytest.
     block = read_session(out).recordings[0].imu[Site.LEFT_SHANK]
     np.testing.assert_allclose(block.acc_m_s2, LEFT.acc, atol=1e-5)
     np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
+
+
+def test_a_preview_names_the_program_that_is_recognised(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    archive = tmp_path / "a.mat"
+    savemat(archive, {"acc": LEFT.acc, "gyr": LEFT.gyr, "fs": 100.0})
+    assert main(["import", "--preview", str(archive)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == ["a.mat:", "  recognised as matlab, and read so unless something is stated of its columns"]
+    for make, is_named in ((ximu, True), (ngimu, False)):
+        assert main(["import", "--preview", str(make(tmp_path)[0])]) == 0
+        assert ("recognised as ximu, and read so unless" in capsys.readouterr().out) is is_named
 
 
 def test_a_preview_gives_the_options_that_read_the_table_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -63,6 +63,7 @@ PROGRAMS = {
         "bids-validator-deno",
         "test_bids_motion.test_the_validator_of_bids_finds_no_error",
         "test_bids_motion.test_every_recording_of_a_visit_comes_back_to_the_last_digit",
+        "test_round_trips.test_what_comes_back_has_the_same_figures_events_and_marks",
     ),
 }
 

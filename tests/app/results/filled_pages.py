@@ -43,6 +43,7 @@ from core.findings import Finding, Severity
 from core.gait.phases import Phase
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient
+from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import COUNT, NONE, PreviewedSensor, TableChoices, TablePreview
 from devices.files.trial import ImportedSensor, ImportedTrial
 from tests.app.home.course_library import VISITS
@@ -154,7 +155,7 @@ def importing_a_table() -> QWidget:
     rows = (("0.00", "0.4", "9.7", "-1.2", "1.0", "-2.0", "3.0"),) * 3
     lines = (",".join(names), *map(",".join, rows))
     preview = TablePreview("f", lines, names, rows, found, found, sensors, is_by_values=True, is_cut=True, refusal=None)
-    page.table.begin(tr("Stopped."), found)
+    page.table.begin(FileRefusedError("walk.csv", "the file has no header line", "Copy the file again"), found)
     page.table.show_preview(preview)
     page.show_table("session_2026/walk.csv")
     return page

@@ -2,10 +2,14 @@
 
 import pytest
 
-from devices.files.column_names import Quantity, meaning_of, sensor_columns
+from devices.files.column_names import Quantity, SensorColumns, half_columns, listed, meaning_of, sensor_columns
 from devices.files.refusal import FileRefusedError
 
 ACC, GYR, MAG, QUAT, TIME = Quantity.ACC, Quantity.GYR, Quantity.MAG, Quantity.QUAT, Quantity.TIME
+
+
+def half_or_whole(names: list[str]) -> tuple[SensorColumns, ...]:
+    return sensor_columns(names) or half_columns(names)
 
 
 @pytest.mark.parametrize(
@@ -109,3 +113,26 @@ def test_two_columns_of_one_meaning_are_refused() -> None:
 def test_of_two_times_the_one_is_taken_that_other_files_share() -> None:
     assert sensor_columns([*columns_of(""), "elapsed (s)", "epoc (ms)"])[0].time == "epoc (ms)"
     assert sensor_columns([*columns_of(""), "time_s", "time_ms"])[0].time == "time_s"
+
+
+def test_a_long_name_keeps_its_end_in_a_sentence() -> None:
+    names = [f"MyoMotion system 3000, left lower limb, Accel Sensor {axis} (mG)" for axis in "XY"]
+    assert listed(names) == "MyoMotion system 30… Accel Sensor X (mG), MyoMotion system 30… Accel Sensor Y (mG)"
+    assert listed(["acc_x"] * 14) == ", ".join(["acc_x"] * 12) + " (+2)"
+
+
+def test_halves_whose_names_differ_by_words_are_one_sensor() -> None:
+    def found(*stems: str) -> list[tuple[str, bool, bool]]:
+        names = [f"{stem}_{axis}" for stem in stems for axis in "xyz"]
+        return [(one.sensor, bool(one.acc), bool(one.gyr)) for one in half_or_whole(names)]
+
+    assert found("TotalAcceleration", "Gyroscope") == [("", True, True)]
+    assert found("left_sensor_acc", "left_gyr", "right_sensor_acc", "right_gyr") == [
+        ("left", True, True),
+        ("right", True, True),
+    ]
+    assert found("left_acc", "right_gyr") == [("left", True, False), ("right", False, True)]
+    assert found("left_acc", "right_acc") == [("left", True, False), ("right", True, False)]
+    with pytest.raises(FileRefusedError, match="left_acc_x, right_acc_x have the same meaning"):
+        found("left_acc", "right_acc", "gyr")
+    assert found("left_acc", "right_acc", "gyr", "pelvis_acc", "pelvis_gyr") == [("pelvis", True, True)]

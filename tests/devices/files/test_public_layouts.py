@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from devices.files.formats import read_trial
 from devices.files.refusal import FileRefusedError
+from devices.files.table_choices import ALL_TABLES, TableChoices
 from devices.files.trial import ImportedTrial
 
 Numbers = NDArray[np.float64]
@@ -277,6 +278,110 @@ def windows_excel(folder: Path) -> list[Path]:
     return [write(folder / "a.csv", [*before, *(f"{t};{r};;" for t, r in zip(times, body, strict=True))], "cp1252")]
 
 
+def myoresearch(folder: Path) -> list[Path]:
+    """Noraxon in German: cp1252, a preamble, mG, one word more in the names of accelerations, mixed line ends."""
+    names, columns = ["Time [s]"], [LEFT.time_s]
+    for place, motion in (("Thigh LT", LEFT), ("Shank LT", RIGHT)):
+        names += [f"MyoMotion {place} Accel Sensor {axis} (mG)" for axis in "XYZ"]
+        names += [f"MyoMotion {place} Gyroscope {axis} (°/s)" for axis in "XYZ"]
+        columns += [motion.acc * 1000 / G, np.degrees(motion.gyr)]
+    body = [row.replace(".", ",") + "\r" * (k % 2) for k, row in enumerate(rows_of(*columns, by=";"))]
+    return [write(folder / "a.csv", ["Name;Müller", "Frequenz;100 Hz", "", ";".join(names), *body], "cp1252")]
+
+
+def witmotion_unpadded(folder: Path) -> list[Path]:
+    """Thousandths of seconds without zeros before them, four rows to a stamp, over midnight."""
+    lines = ["time\tDeviceName\tAccX(g)\tAccY(g)\tAccZ(g)\tAsX(°/s)\tAsY(°/s)\tAsZ(°/s)"]
+    for k, row in enumerate(rows_of(LEFT.acc / G, np.degrees(LEFT.gyr), by="\t")):
+        whole, _, part = clock(LEFT.time_s[4 * (k // 4)]).partition(".")
+        lines.append(f"{whole}:{int(part)}\tWT901\t{row}")
+    return [write(folder / "a.txt", lines)]
+
+
+def sensor_logger_joined(folder: Path) -> list[Path]:
+    head = "time,seconds_elapsed,TotalAcceleration_z,TotalAcceleration_y,TotalAcceleration_x,"
+    head += "Gyroscope_z,Gyroscope_y,Gyroscope_x"
+    stamps = [NANOSECONDS + round(1e9 * t) for t in LEFT.time_s]
+    body = rows_of(LEFT.time_s, LEFT.acc[:, ::-1], LEFT.gyr[:, ::-1])
+    return [write(folder / "a.csv", [head, *(f"{s},{row}" for s, row in zip(stamps, body, strict=True))])]
+
+
+def movesense(folder: Path) -> list[Path]:
+    """No units, and milliseconds of packets of eight samples."""
+    stamps = 2_345_678 + np.round(1000 * LEFT.time_s[8 * (np.arange(ROWS) // 8)])
+    body = rows_of(stamps, LEFT.acc, np.degrees(LEFT.gyr), form="%.10g")
+    return [write(folder / "a.csv", ["timestamp,accX,accY,accZ,gyroX,gyroY,gyroZ", *body])]
+
+
+def nexus(folder: Path, force: str = "g", scale: float = 1 / G) -> list[Path]:
+    """Vicon's devices: the rate, the names of groups, axes alone, and units in lines of their own."""
+    groups = [f"{imu} - {what},," for imu in ("IMU 1", "IMU 2") for what in ("Acceleration", "Gyroscope")]
+    head = ["Devices", "Sample rate: 100", ",," + ",".join(groups), "Frame,Sub Frame" + ",x,y,z" * 4]
+    head += [",," + ",".join(([force] * 3 + ["deg/s"] * 3) * 2)]
+    rates = [np.degrees(motion.gyr) for motion in (LEFT, RIGHT)]
+    frames = 1 + np.arange(float(ROWS))
+    body = rows_of(frames, 0 * frames, LEFT.acc * scale, rates[0], RIGHT.acc * scale, rates[1], form="%.10g")
+    return [write(folder / "a.csv", [*head, *body])]
+
+
+def groups_of_excel(folder: Path) -> list[Path]:
+    """Merged cells with the places above the names."""
+    axes = [f"{what} {axis} ({unit})" for what, unit in (("acc", "g"), ("gyr", "rad/s")) for axis in "xyz"]
+    head = [",left thigh,,,,,,left shank,,,,,", ",".join(["time (s)", *axes, *axes])]
+    body = rows_of(LEFT.time_s, LEFT.acc / G, LEFT.gyr, RIGHT.acc / G, RIGHT.gyr, form="%.7f")
+    return [write(folder / "a.csv", [*head, *body], "utf-8-sig")]
+
+
+def of_pandas(folder: Path) -> list[Path]:
+    """Written by pandas: numbers of rows without a name, several words for nothing."""
+    body = [f"{k},{row}" for k, row in enumerate(rows_of(LEFT.time_s, LEFT.acc, LEFT.gyr))]
+    for k, word in enumerate(("<NA>", "NaT", "None", "-1.#IND"), 150):
+        body[k] = ",".join([*body[k].split(",")[:2], *[word] * 6])
+    return [write(folder / "a.csv", [",t,ax,ay,az,gyr_x_rad_s,gyr_y_rad_s,gyr_z_rad_s", *body])]
+
+
+def of_r_in_german(folder: Path) -> list[Path]:
+    """write.csv2: semicolons and decimal commas, words cut short, numbers of rows in quotation marks."""
+    names = [
+        "",
+        "Zeit [ms]",
+        *(f"Beschl. {axis} [m/s²]" for axis in "xyz"),
+        *(f"Drehrate {axis} [°/s]" for axis in "xyz"),
+    ]
+    body = [row.replace(".", ",") for row in rows_of(1000 * LEFT.time_s, LEFT.acc, np.degrees(LEFT.gyr), by=";")]
+    lines = [";".join(f'"{name}"' for name in names), *(f'"{k}";{row}' for k, row in enumerate(body, 1))]
+    return [write(folder / "a.csv", lines, "cp1252")]
+
+
+def appended(folder: Path) -> list[Path]:
+    """A logger that was started twice in one file: comments and header again."""
+    head = ["# logger 2.1", "# boot", "Time [s],A_X [g],A_Y [g],A_Z [g],G_X [dps],G_Y [dps],G_Z [dps]"]
+    body = rows_of(LEFT.time_s, LEFT.acc / G, np.degrees(LEFT.gyr))
+    return [write(folder / "a.csv", [*head, *body[:400], *head, *body[400:]])]
+
+
+def st_logger(folder: Path) -> list[Path]:
+    """STMicroelectronics: mg and mdps, commas in times of a day, a preamble."""
+    head = ["Logged started on;01/03/2026", "Nodes;LSM6DSOX@C0:51"]
+    head += ["Time;Counter;A_X [mg];A_Y [mg];A_Z [mg];G_X [mdps];G_Y [mdps];G_Z [mdps]"]
+    times = [clock(t, form="{:02d}:{:02d}:{:02d},{:03d}") for t in LEFT.time_s]
+    body = rows_of(np.arange(float(ROWS)), LEFT.acc * 1000 / G, np.degrees(LEFT.gyr) * 1000, by=";", form="%.0f")
+    return [write(folder / "a.csv", [*head, *map(";".join, zip(times, body, strict=True))])]
+
+
+def minutes_and_broken_degrees(folder: Path) -> list[Path]:
+    """Minutes, and degrees that were encoded twice."""
+    head = "Time [min];AccX [g];AccY [g];AccZ [g];GyrX [Â°/s];GyrY [Â°/s];GyrZ [Â°/s]"
+    body = rows_of(LEFT.time_s / 60, LEFT.acc / G, np.degrees(LEFT.gyr), by=";", form="%.9f")
+    return [write(folder / "a.csv", [head, *body])]
+
+
+def commas_in_quotes(folder: Path) -> list[Path]:
+    head = '"time_s","acc_x_m_s2","acc_y_m_s2","acc_z_m_s2","gyr_x_rad_s","gyr_y_rad_s","gyr_z_rad_s"'
+    body = rows_of(LEFT.time_s, LEFT.acc, LEFT.gyr, by=" ")
+    return [write(folder / "a.csv", [head, *(f'"{row}"'.replace(" ", '","').replace(".", ",") for row in body)])]
+
+
 @dataclass(frozen=True)
 class ReadLayout:
     """What has to come out: the sensors' motion in order, and findings that have to be among those reported."""
@@ -311,6 +416,18 @@ READ = {
     "R": ReadLayout(of_r, lost=1),
     "NumPy": ReadLayout(of_numpy),
     "Excel, Windows": ReadLayout(windows_excel),
+    "myoResearch": ReadLayout(myoresearch, (LEFT, RIGHT)),
+    "WitMotion, unpadded": ReadLayout(witmotion_unpadded, findings=("stamps_spread",)),
+    "Sensor Logger, joined": ReadLayout(sensor_logger_joined),
+    "Movesense": ReadLayout(movesense, findings=("stamps_spread", "unit_by_size")),
+    "Nexus": ReadLayout(nexus, (LEFT, RIGHT)),
+    "Excel, groups": ReadLayout(groups_of_excel, (LEFT, RIGHT)),
+    "pandas": ReadLayout(of_pandas, lost=4),
+    "R, German": ReadLayout(of_r_in_german),
+    "appended": ReadLayout(appended),
+    "ST": ReadLayout(st_logger, atol=1e-2),
+    "minutes": ReadLayout(minutes_and_broken_degrees),
+    "decimal commas in quotes": ReadLayout(commas_in_quotes),
 }
 
 
@@ -384,7 +501,74 @@ def cut_while_copied(folder: Path) -> list[Path]:
     return [path]
 
 
+def two_clocks(folder: Path) -> list[Path]:
+    """phyphox's two tables side by side."""
+    names = ["Time (s)", *(f"Acceleration {axis} (m/s^2)" for axis in "xyz")]
+    names += ["Time (s)", *(f"Gyroscope {axis} (rad/s)" for axis in "xyz")]
+    body = rows_of(LEFT.time_s, LEFT.acc, LEFT.time_s + 0.3, LEFT.gyr)
+    return [write(folder / "a.csv", [",".join(f'"{name}"' for name in names), *body])]
+
+
+def thousands(folder: Path) -> list[Path]:
+    """Whole numbers of mg and mdeg/s with points: 1.003 is a thousand and three."""
+    head = "time (ms);acc x (mg);acc y (mg);acc z (mg);gyr x (mdps);gyr y (mdps);gyr z (mdps)"
+    values = np.column_stack([LEFT.acc * 1000 / G, np.degrees(LEFT.gyr) * 1000])
+    body = [";".join(f"{round(value):,}".replace(",", ".") for value in row) for row in values]
+    return [write(folder / "a.csv", [head, *(f"{10 * k};{row}" for k, row in enumerate(body))])]
+
+
+def named_in_another_unit(folder: Path) -> list[Path]:
+    head = "time_s,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,gyr_x_deg_s,gyr_y_deg_s,gyr_z_deg_s"
+    return [write(folder / "a.csv", [head, *rows_of(LEFT.time_s, LEFT.acc, LEFT.gyr)])]
+
+
+def gravity_alone(folder: Path) -> list[Path]:
+    """A telephone's direction of gravity, which feels no motion."""
+    head = "time (s),gravity x (m/s^2),gravity y (m/s^2),gravity z (m/s^2),gyro x (rad/s),gyro y (rad/s),gyro z (rad/s)"
+    return [write(folder / "a.csv", [head, *rows_of(LEFT.time_s, LEFT.acc - LEFT.free_acc, LEFT.gyr)])]
+
+
+def two_ranges(folder: Path) -> list[Path]:
+    """Two accelerometers in one sensor."""
+    names = ["Time (s)", *(f"S1 Accel {kind} {axis} (m/s²)" for kind in ("low", "wide") for axis in "XYZ")]
+    names += [f"S1 Gyro {axis} (deg/s)" for axis in "XYZ"]
+    return [write(folder / "a.csv", [",".join(names), *rows_of(LEFT.time_s, LEFT.acc, LEFT.acc, np.degrees(LEFT.gyr))])]
+
+
+def counts_of_a_converter(folder: Path) -> list[Path]:
+    """An MPU-6050 without its scales; the times by their unit alone."""
+    body = rows_of(1000 * LEFT.time_s, LEFT.acc * 4096 / G, np.degrees(LEFT.gyr) * 32.8, form="%.0f")
+    return [write(folder / "a.csv", ["ms,ax,ay,az,gx,gy,gz", *body])]
+
+
+def whole_seconds(folder: Path) -> list[Path]:
+    """Excel has shown the times without their fractions."""
+    head = "Date/Time,Accel X (g),Accel Y (g),Accel Z (g),Gyro X (deg/s),Gyro Y (deg/s),Gyro Z (deg/s)"
+    body = rows_of(LEFT.acc / G, np.degrees(LEFT.gyr))
+    return [
+        write(folder / "a.csv", [head, *(f"03/01/2026 11:59:{k // 100:02d} AM,{row}" for k, row in enumerate(body))])
+    ]
+
+
+def labchart(folder: Path) -> list[Path]:
+    """LabChart: key and values for each column above the rows, whose names come first; no name for the times."""
+    keys = ["Interval=\t0,01 s", "ChannelTitle=\tAcc X\tAcc Y\tAcc Z\tGyro X\tGyro Y\tGyro Z"]
+    keys += ["Range=" + "\t4,000 g" * 3 + "\t1000 dps" * 3, "UnitName=" + "\tg" * 3 + "\tdps" * 3]
+    keys += ["TopValue=" + "\t4" * 3 + "\t1000" * 3]
+    body = rows_of(LEFT.time_s, LEFT.acc / G, np.degrees(LEFT.gyr), by="\t")
+    return [write(folder / "a.txt", [*keys, *(row.replace(".", ",") for row in body)], "cp1252")]
+
+
 REFUSED = {
+    "two clocks": (two_clocks, "parts of the table have times of their own"),
+    "thousands": (thousands, "have a sign between thousands, such as"),
+    "named in another unit": (named_in_another_unit, "but gravity turns as if they were in rad/s"),
+    "gravity alone": (gravity_alone, "the file holds angular rates but no acceleration"),
+    "two ranges": (two_ranges, "S1 Accel low X (m/s²), S1 Accel wide X (m/s²) have the same meaning"),
+    "whole seconds": (whole_seconds, "792 of 800 samples have the same time as the sample before"),
+    "LabChart": (labchart, "the samples in the file have no times"),
+    "counts": (counts_of_a_converter, "Export acceleration in m/s2, not the counts of the sensor's converter"),
+    "Nexus in mm/s2": (lambda folder: nexus(folder, "mm/s^2", 1000.0), 'is in "mm/s^2", expected one of m/s2, g, mg'),
     "MotionSense": (motionsense, "does not match gravity in"),
     "Sensor Logger, no gravity": (
         lambda folder: sensor_logger(folder, "Accelerometer", LEFT.free_acc),
@@ -398,6 +582,24 @@ REFUSED = {
     "a picture": (a_picture, "the file is not text but binary data"),
     "cut while copied": (cut_while_copied, "the file may have been cut off"),
 }
+
+
+STATED = {  # what somebody states of a table that is refused else
+    "LabChart": (labchart, TableChoices(time="1", time_unit="s")),
+    "two ranges": (
+        two_ranges,
+        TableChoices(acc=("5", "6", "7"), acc_unit="m/s2", gyr=("8", "9", "10"), gyr_unit="deg/s"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_a_refused_layout_is_read_as_somebody_states(name: str, tmp_path: Path) -> None:
+    make, stated = STATED[name]
+    (sensor,) = read_trial("", make(tmp_path), None, {ALL_TABLES: stated}).sensors
+    np.testing.assert_allclose(sensor.block.time_s, LEFT.time_s, atol=1e-9)
+    np.testing.assert_allclose(sensor.block.acc_m_s2, LEFT.acc, atol=2e-4)
+    np.testing.assert_allclose(sensor.block.gyr_rad_s, LEFT.gyr, atol=2e-4)
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.home.importing.table_words import stated_of
 from devices.files.answers import details_of, value_from
 from devices.files.formats import format_of, read_trial
 from devices.files.gathering import gather
@@ -27,6 +28,7 @@ from tests.devices.files.test_public_layouts import (
     lpms,
     no_header,
     rows_of,
+    windows_excel,
     write,
 )
 
@@ -144,6 +146,36 @@ def test_a_wrong_choice_shows_why_it_cannot_be(tmp_path: Path) -> None:
     assert "neither acceleration nor angular rates are chosen" in refusal(acc=(NONE,), gyr=(NONE,))
     assert "in column t is not a number" in refusal(decimal=",")
     assert "the file is no table of numbers" in refusal(separator=";")
+
+
+def test_a_sensor_that_cannot_be_read_beside_one_that_can_is_named(tmp_path: Path) -> None:
+    names = ["time_s", *(f"{site}_{what}" for site in ("lt", "ls") for what in ("ax", "ay", "az", "gx", "gy", "gz"))]
+    body = rows_of(LEFT.time_s, LEFT.acc, LEFT.gyr, LEFT.free_acc, LEFT.gyr)
+    preview = preview_of(write(tmp_path / "a.csv", [",".join(names), *body]), NO_CHOICES)
+    assert [one.name for one in preview.sensors] == ["lt"]
+    (refusal,) = preview.unread
+    assert "the acceleration ls_ax, ls_ay, ls_az points nowhere in the mean" in str(refusal)
+    assert stated_of(preview).is_caution
+    assert "Other sensors in this table cannot be read." in stated_of(preview).then
+    assert preview_of(table(tmp_path / "b.csv"), STATED).unread == ()
+
+
+def test_units_that_names_give_are_shown_where_a_table_is_refused(tmp_path: Path) -> None:
+    names = ["ms", *(f"acc {axis} (g)" for axis in "xyz"), *(f"gyr {axis} (deg/s)" for axis in "xyz")]
+    preview = preview_of(table(tmp_path / "a.csv", names=tuple(names)), NO_CHOICES)
+    assert "is labelled g, but its median" in str(preview.refusal)
+    assert (preview.found.time, preview.found.time_unit) == ("ms", "ms")
+    assert (preview.found.acc_unit, preview.found.gyr_unit) == ("g", "deg/s")
+
+
+def test_a_column_without_name_and_content_is_refused_as_times_or_names_of_sensors(tmp_path: Path) -> None:
+    (path,) = windows_excel(tmp_path)
+    for stated, why in (
+        (TableChoices(time="column 8", time_unit="clock"), 'a sample has no time in column "column 8"'),
+        (TableChoices(sensor="column 9"), 'the column "column 9" holds 0 different names of sensors'),
+    ):
+        refusal = preview_of(path, stated).refusal
+        assert why in str(refusal)
 
 
 def test_the_sensors_of_a_table_may_be_named_by_a_column_or_not(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from app.home.importing.import_page import ImportPage
 from app.home.importing.table_form import TableForm
 from app.system.known_tables import known_tables
 from app.widgets.choice import Choice
+from app.wording.translation import use_language
 from core.samples import ImuBlock
 from tests.app.home.home_library import WAIT_MS
 from tests.app.home.importing.test_importing import choices, shown
@@ -80,6 +81,34 @@ def test_a_table_that_nobody_knows_is_confirmed_by_one_key(qtbot: QtBot, home: H
     np.testing.assert_allclose(block.gyr_rad_s, LEFT.gyr, atol=1e-5)
 
 
+def test_why_a_table_is_refused_is_stated_once_and_in_which_line(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))
+    lines = path.read_text(encoding="utf-8").splitlines()
+    lines[40] += ",7"
+    form = explain(qtbot, home, write(path, lines))
+    wait_for(qtbot, form, "Line 41: the line has 8 columns, but the header has 7. Correct the file or export it again.")
+    assert shown(home.importing.page).count("the line has 8 columns") == 1
+
+
+def test_no_option_of_the_command_line_is_shown(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    form = explain(qtbot, home, table(tmp_path / "a.csv"))
+    press_to(form.time, "none")
+    wait_for(qtbot, form, "The samples in the file have no times.")
+    assert form.notice.text.endswith("time_us, or give the sampling rate.")
+
+
+def test_columns_without_names_are_called_by_their_places(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    use_language("de")
+    try:
+        form = explain(qtbot, home, *no_header(tmp_path))
+        qtbot.waitUntil(lambda: form.acc[0].currentData() == "column 2", timeout=WAIT_MS)
+        assert form.acc[0].currentText() == "Spalte 2"
+        assert "Spalte 2 Beschleunigung x" in form.rows.as_text()
+        assert "column 2" not in shown(home.importing.page)
+    finally:
+        use_language("en")
+
+
 def test_a_table_that_is_recognised_is_not_asked_about(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     home.importing.read([table(tmp_path / "walk.csv", names=("time_s", "ax", "ay", "az", "gx", "gy", "gz"))])
     page = wait_for_draft(qtbot, home)
@@ -102,7 +131,11 @@ CHANGES: dict[str, tuple[Which, object, str]] = {
     "unit of acceleration": (lambda form: form.acc_unit, "g", "is labelled g, but its median of 9.87 matches"),
     "angular rate z": (lambda form: form.gyr[2], "t", 'The column "t" is chosen for two quantities.'),
     "angular rate none": (lambda form: form.gyr[0], "none", "This file has no angular rates"),
-    "unit of angular rate": (lambda form: form.gyr_unit, "deg/s", READY),
+    "unit of angular rate": (
+        lambda form: form.gyr_unit,
+        "deg/s",
+        "labelled deg/s, but gravity turns as if they were in rad/s",
+    ),
 }
 
 
@@ -141,12 +174,12 @@ def test_what_was_stated_is_kept_for_tables_of_the_same_columns(
     qtbot: QtBot, home: Home, tmp_path: Path, tables_kept: Path
 ) -> None:
     form = explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv", names=("t", "P-0147", "q", "r", "u", "v", "w")))
-    press_to(form.gyr_unit, "deg/s")
+    press_to(form.gyr_unit, "mdeg/s")
     qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
     press_enter(home)
     wait_for_draft(qtbot, home)
     (kept,) = known_tables().values()
-    assert (kept.acc, kept.gyr, kept.gyr_unit, kept.time) == (("2", "3", "4"), ("5", "6", "7"), "deg/s", "1")
+    assert (kept.acc, kept.gyr, kept.gyr_unit, kept.time) == (("2", "3", "4"), ("5", "6", "7"), "mdeg/s", "1")
     assert "P-0147" not in tables_kept.read_text()
     home.escape()
     again = table(tmp_path / "other" / "walk_right_shank.csv", names=("t", "P-0147", "q", "r", "u", "v", "w"))
@@ -154,7 +187,7 @@ def test_what_was_stated_is_kept_for_tables_of_the_same_columns(
     page = wait_for_draft(qtbot, home)
     assert not page.table.isVisible()
     (block,) = blocks(home).values()
-    np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr), atol=1e-6)
+    np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr) / 1000, atol=1e-9)
     other = table(tmp_path / "third.csv")  # whose columns have other names
     explain(qtbot, home, other)
 
@@ -165,15 +198,15 @@ def test_what_is_kept_can_be_changed_and_forgotten(qtbot: QtBot, home: Home, tmp
     page = wait_for_draft(qtbot, home)
     page.draft.columns.click()
     qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
-    press_to(page.table.gyr_unit, "deg/s")
+    press_to(page.table.gyr_unit, "mdeg/s")
     qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
     press_enter(home)
     wait_for_draft(qtbot, home)
     (block,) = blocks(home).values()
-    np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr), atol=1e-6)
+    np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr) / 1000, atol=1e-9)
     page.draft.columns.click()
     qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
-    assert page.table.gyr_unit.currentData() == "deg/s"
+    assert page.table.gyr_unit.currentData() == "mdeg/s"
     page.table.detect.click()
     qtbot.waitUntil(lambda: page.table.gyr_unit.currentData() == "rad/s", timeout=WAIT_MS)
     press_enter(home)
@@ -231,13 +264,13 @@ def test_tables_of_two_programs_are_asked_about_each(qtbot: QtBot, home: Home, t
 def test_a_table_without_names_is_confirmed_each_time_as_it_was(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     """Seven columns are those of many programs."""
     form = explain(qtbot, home, *no_header(tmp_path / "one"))
-    press_to(form.gyr_unit, "deg/s")
+    press_to(form.gyr_unit, "mdeg/s")
     qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
     press_enter(home)
     wait_for_draft(qtbot, home)
     home.escape()
     form = explain(qtbot, home, *no_header(tmp_path / "two"))
-    assert form.gyr_unit.currentData() == "deg/s"
+    assert form.gyr_unit.currentData() == "mdeg/s"
 
 
 def test_accelerometer_and_gyroscope_in_files_of_their_own_are_joined(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
