@@ -196,7 +196,7 @@ def settings() -> QWidget:
     page.drivers.show_packages(
         [
             DriverPackage("gaitwright-sum-sensor", "1.0", ("sum-sensor",), is_allowed=True),
-            DriverPackage("laboratory-of-movement-sensors", "2026.11.1", ("lab-imu", "lab-imu-2"), is_allowed=False),
+            DriverPackage("laboratory-movement-sensors", "2026.11.1", ("lab-imu", "lab-imu-2"), is_allowed=False),
         ]
     )
     return page
