@@ -114,7 +114,7 @@ def _disturbed(found: FilterPass, mag: FloatArray, step_s: float) -> BoolArray:
     smooth = found.smooth_rad_s[there]
     is_fast = np.einsum("ni,ni->n", smooth, smooth) >= NEW_FIELD_RAD_S**2
     reference = _Reference(step_s)
-    judged = [reference.is_left(*one, fast) for one, fast in zip(fields.tolist(), is_fast.tolist(), strict=True)]
+    judged = [reference.is_left(a, b, fast) for (a, b), fast in zip(fields.tolist(), is_fast.tolist(), strict=True)]
     is_disturbed = np.ones(len(mag), dtype=np.bool_)
     last = np.cumsum(there) - 1  # the last field before a loss stands for it
     is_disturbed[last >= 0] = np.array(judged, dtype=np.bool_)[last[last >= 0]]
