@@ -10,6 +10,7 @@ from app.cli.progress import finding_lines
 from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
 from app.exports.local_csv import CsvForm, rewrite_tables
 from app.exports.result_folder import OWN_SESSION, check_place, written_beside
+from app.review.installed import has_rerun
 from app.system.progress import Report
 from app.wording.body import name_of
 from core.results import Analysis, Method
@@ -35,11 +36,18 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
         analysis = write_analysed(read_session(args, args.session, report), folder, choices_of(args), report)
         rewrite_tables(folder, form)
     yield from lines_of(analysis, args.out)
+    yield from unwritten_log(args)
 
 
 def choices_of(args: argparse.Namespace) -> AnalysisChoices:
     """What of an analysis the command line decides, here and in a batch."""
     return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
+
+
+def unwritten_log(args: argparse.Namespace) -> Iterator[str]:
+    """State that no log for Rerun was written although none was refused."""
+    if not args.no_rrd and not has_rerun():
+        yield "Rerun is not installed on this computer: session.rrd was not written."
 
 
 def form_of(args: argparse.Namespace) -> CsvForm:

@@ -5,6 +5,7 @@ from datetime import datetime
 from pathlib import Path
 
 from app.exports.result_folder import LOG, write_results
+from app.review.installed import has_rerun
 from app.system.logs import version_of
 from app.system.progress import Report
 from core.analysis import analyse
@@ -27,7 +28,7 @@ def write_analysed(session: Session, folder: Path, choices: AnalysisChoices, rep
     analysis = analyse(session, choices.method, choices.tau_s, report)
     report(1.0, "writing")
     write_results(session, analysis, folder)
-    if choices.has_log:
+    if choices.has_log and has_rerun():
         from app.review.rerun_log import write_log  # here, not above: its library takes long to import
 
         write_log(session, analysis, folder / LOG)

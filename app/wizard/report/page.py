@@ -6,6 +6,7 @@ from uuid import UUID
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
+from app.review.installed import has_rerun
 from app.theme.current import on_theme, px, scaled
 from app.widgets.card import Card
 from app.widgets.chips import Chips
@@ -24,7 +25,7 @@ PADDING = 20
 NARROW_BELOW = 900
 QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
 LETTER = "letter"  # among the files to export
-FIRST_CHOICE = ("csv", "rrd")
+FIRST_CHOICE = ("csv", "rrd")  # the second where it can be written
 
 
 class ReportPage(QWidget):
@@ -48,11 +49,11 @@ class ReportPage(QWidget):
                 ("c3d", tr("C3D")),
                 ("mot", tr("OpenSim")),
                 ("fhir", tr("FHIR")),
-                ("rrd", tr("Rerun")),
+                *([("rrd", tr("Rerun"))] if has_rerun() else []),
                 (LETTER, tr("Patient letter")),
             ],
         )
-        self.formats.choose(FIRST_CHOICE)
+        self.formats.choose(FIRST_CHOICE if has_rerun() else FIRST_CHOICE[:1])
         self.paper = Segmented(tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
         self.earlier = Choice(tr("Compare with"))
         self.earlier.let_shrink(WORDS_WIDTH - 2 * PADDING, WORDS_WIDTH - 2 * PADDING)  # conditions are typed
