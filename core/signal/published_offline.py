@@ -193,4 +193,13 @@ def _wrapped(angle: float) -> float:
 
 
 def _in_earth(q_earth_from_sensor: FloatArray, vectors: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("nij,nj->ni", matrix_from_quaternion(q_earth_from_sensor), vectors))
+    """Rotate by terms in the reference's order: of a field of zeros, the signs of its zeros give the heading there."""
+    w, x, y, z = q_earth_from_sensor.T
+    a, b, c = vectors.T
+    return np.column_stack(
+        [
+            (1 - 2 * y * y - 2 * z * z) * a + 2 * b * (x * y - w * z) + 2 * c * (w * y + x * z),
+            2 * a * (w * z + x * y) + b * (1 - 2 * x * x - 2 * z * z) + 2 * c * (y * z - w * x),
+            2 * a * (x * z - w * y) + 2 * b * (w * x + y * z) + c * (1 - 2 * x * x - 2 * y * y),
+        ]
+    )
