@@ -73,7 +73,8 @@ def with_losses() -> Samples:
 def heads_down() -> Samples:
     """A sensor whose z axis points to the ground from its first sample."""
     samples = moved(20.0)
-    return Samples(*(HEADS_DOWN.apply(v) for v in (samples.gyr, samples.acc, samples.mag)))
+    gyr, acc, mag = (HEADS_DOWN.apply(v) for v in (samples.gyr, samples.acc, samples.mag))
+    return Samples(gyr, acc, mag)
 
 
 def walking() -> Samples:
@@ -123,8 +124,10 @@ def differences(samples: Samples) -> dict[str, float]:
         )
         live.append((np.abs(found - turned).max(), np.abs(our_known - known).max(), abs(our_sd - sd)))
         if part.start % 7 == 0:  # as after a gap
-            theirs.resetState(), ours.reset()
-            theirs.setBiasEstimate(known, sd), ours.set_bias(our_known, our_sd)
+            theirs.resetState()
+            theirs.setBiasEstimate(known, sd)
+            ours.reset()
+            ours.set_bias(our_known, our_sd)
     worst |= dict(zip(("live", "live bias", "live deviation"), np.max(live, axis=0), strict=True))
     return {name: float(value) for name, value in worst.items()}
 
