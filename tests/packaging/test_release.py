@@ -22,13 +22,13 @@ def test_every_action_is_one_commit_and_no_checkout_keeps_its_credentials() -> N
 
 def test_the_conda_recipe_needs_what_the_project_needs() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    wanted = {one.name.lower(): one.specifier for one in map(Requirement, project["dependencies"])}
+    required = {one.name.lower(): one.specifier for one in map(Requirement, project["dependencies"])}
     recipe = (ROOT / "packaging" / "conda" / "recipe.yaml").read_text(encoding="utf-8")
     given = {
         name: Requirement(f"{name} {limits}").specifier for name, limits in re.findall(r"  - ([\w-]+) (>=\S+)", recipe)
     }
     assert given.pop("python") == Requirement(f"python {project['requires-python']}").specifier
-    assert given == {OTHERWISE_NAMED.get(name, name): limits for name, limits in wanted.items()}
+    assert given == {OTHERWISE_NAMED.get(name, name): limits for name, limits in required.items()}
     assert f'version: "{project["version"]}"' in recipe
 
 
