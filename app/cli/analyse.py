@@ -36,18 +36,18 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
         analysis = write_analysed(read_session(args, args.session, report), folder, choices_of(args), report)
         rewrite_tables(folder, form)
     yield from lines_of(analysis, args.out)
-    yield from unwritten_log(args)
+    yield from lines_without_log(choices_of(args))
+
+
+def lines_without_log(choices: AnalysisChoices) -> Iterator[str]:
+    """Say that a log was wanted and cannot be written here."""
+    if choices.has_log and not has_rerun():
+        yield "session.rrd was not written: Rerun is not installed. Install rerun-sdk, or the package gaitwright-rerun."
 
 
 def choices_of(args: argparse.Namespace) -> AnalysisChoices:
     """What of an analysis the command line decides, here and in a batch."""
     return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
-
-
-def unwritten_log(args: argparse.Namespace) -> Iterator[str]:
-    """State that no log for Rerun was written although none was refused."""
-    if not args.no_rrd and not has_rerun():
-        yield "Rerun is not installed on this computer: session.rrd was not written."
 
 
 def form_of(args: argparse.Namespace) -> CsvForm:

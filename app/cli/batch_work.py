@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from app.cli.analyse import choices_of, unwritten_log
+from app.cli.analyse import choices_of, lines_without_log
 from app.cli.arguments import LIBRARY
 from app.cli.library import opened_library
 from app.cohort.batch.done import batch_at
@@ -25,7 +25,7 @@ def done(args: argparse.Namespace, workers: Workers, report: Report) -> tuple[Ba
         except ClusterLostError as lost:
             what = "the cluster is out of reach; what was done until then stays in OUT"
             raise FileRefusedError(args.dask, what, "Start the cluster, then run the same command again") from lost
-        return work.result, [*sessions.notes(), *unwritten_log(args)]
+        return work.result, [*sessions.notes(), *lines_without_log(choices_of(args))]
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Iterator
 
-from app.cli.analyse import lines_of
+from app.cli.analyse import lines_of, lines_without_log
 from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
 from app.exports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
 from app.system.progress import Report
@@ -31,5 +31,7 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
         write_session(simulated.session, folder / OWN_SESSION)
         write_table(*truth_table(simulated.truth), folder / OWN_SESSION / "truth.csv")
         session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes
-        analysis = write_analysed(session, folder, AnalysisChoices(Method.ROBUST, DEFAULT_TAU_S), report)
+        choices = AnalysisChoices(Method.ROBUST, DEFAULT_TAU_S)
+        analysis = write_analysed(session, folder, choices, report)
     yield from lines_of(analysis, args.out)
+    yield from lines_without_log(choices)

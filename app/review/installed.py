@@ -1,8 +1,12 @@
-"""Whether Rerun is installed, which has no wheel for Windows on ARM and for Macs with an Intel processor."""
+"""Whether Rerun is installed: without it every result is there but the log that it shows."""
 
+from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
+from pathlib import Path
 
 
 def has_rerun() -> bool:
-    """Whether logs can be written; found without loading the library, which takes long."""
-    return find_spec("rerun") is not None
+    """Whether a session's log can be written; a frozen program has the Python of Rerun in itself, and not the rest."""
+    found = find_spec("rerun_bindings")
+    folders = map(Path, (found and found.submodule_search_locations) or ())
+    return any(one.name.endswith(tuple(EXTENSION_SUFFIXES)) for folder in folders for one in folder.glob("rerun*"))

@@ -25,7 +25,7 @@ PADDING = 20
 NARROW_BELOW = 900
 QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
 LETTER = "letter"  # among the files to export
-FIRST_CHOICE = ("csv", "rrd")  # the second where it can be written
+FIRST_CHOICE = ("csv", "rrd")
 
 
 class ReportPage(QWidget):
