@@ -40,7 +40,7 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
 
 
 def lines_without_log(choices: AnalysisChoices) -> Iterator[str]:
-    """Say that a log was wanted and cannot be written here."""
+    """Report that a log was asked for and cannot be written here."""
     if choices.has_log and not has_rerun():
         yield "session.rrd was not written: Rerun is not installed. Install rerun-sdk, or the package gaitwright-rerun."
 

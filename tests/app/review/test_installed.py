@@ -1,4 +1,4 @@
-"""Without Rerun every result is there but its log: said where it was wanted, not offered where one chooses."""
+"""Without Rerun every result is there but its log: stated where it was asked for, not offered where one chooses."""
 
 import subprocess
 import sys
@@ -27,7 +27,7 @@ def test_it_is_installed_with_the_tests() -> None:
 
 
 @pytest.mark.endurance
-def test_without_it_the_demonstration_lacks_the_log_alone_and_says_so(
+def test_without_it_the_demonstration_lacks_the_log_alone_and_states_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["demo", "--out", str(tmp_path / "with")]) == 0
