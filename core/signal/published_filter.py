@@ -8,7 +8,7 @@ implementation, version 2.1.2. `core.signal.published_offline` knows the future 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, pi, radians, sin, sqrt, tan
+from math import cos, inf, pi, radians, sin, sqrt, tan
 
 import numpy as np
 from scipy.signal import lfilter
@@ -78,9 +78,13 @@ class LowPass:
                 self.settle(means)
             return means
         (b0, b1, b2), (a1, a2) = self._b, self._a
-        smooth = [b0 * x + s for x, s in zip(values, self._first, strict=True)]
-        self._first = [b1 * x - a1 * y + s for x, y, s in zip(values, smooth, self._second, strict=True)]
-        self._second = [b2 * x - a2 * y for x, y in zip(values, smooth, strict=True)]
+        first, second = self._first, self._second
+        smooth = []
+        for k, x in enumerate(values):
+            y = b0 * x + first[k]
+            first[k] = b1 * x - a1 * y + second[k]
+            second[k] = b2 * x - a2 * y
+            smooth.append(y)
         return smooth
 
     def block(self, values: FloatArray) -> FloatArray:
@@ -164,7 +168,7 @@ class PublishedFilter:
         """Prediction from the gyroscope."""
         x, y, z = rate[0] - self._bias[0], rate[1] - self._bias[1], rate[2] - self._bias[2]
         size = sqrt(x * x + y * y + z * z)
-        if size > STILL_RAD_S:
+        if STILL_RAD_S < size < inf:
             half = 0.5 * size * self._step_s
             s = sin(half) / size
             self._inertial = unit_product(self._inertial, (cos(half), s * x, s * y, s * z))
@@ -252,4 +256,6 @@ def rotated(q: Quaternion, v: Sequence[float]) -> Vector:
 
 
 def _clipped(bias_rad_s: float) -> float:
-    return min(max(bias_rad_s, -BIAS_CLIP_RAD_S), BIAS_CLIP_RAD_S)
+    if bias_rad_s > BIAS_CLIP_RAD_S:
+        return BIAS_CLIP_RAD_S
+    return -BIAS_CLIP_RAD_S if bias_rad_s < -BIAS_CLIP_RAD_S else bias_rad_s

@@ -223,6 +223,17 @@ def test_with_a_magnetometer_the_field_points_north() -> None:
         assert np.sqrt(np.mean(heading**2)) < 2.5
 
 
+def test_what_is_no_number_raises_nothing_and_no_samples_give_none() -> None:
+    samples = moved(5.0)
+    running = PublishedFilter(STEP_S)
+    assert running.update(np.empty((0, 3)), np.empty((0, 3))).shape == (0, 4)
+    for value in (np.nan, np.inf):
+        gyr, acc = samples.gyr.copy(), samples.acc.copy()
+        gyr[100, 1] = acc[200, 2] = value
+        with np.errstate(all="ignore"):
+            assert running.update(gyr, acc).shape == (len(gyr), 4)
+
+
 def test_batches_of_any_size_give_the_same() -> None:
     samples = with_losses()
     whole = PublishedFilter(STEP_S).update(samples.gyr, samples.acc)
