@@ -23,6 +23,7 @@ import numpy as np
 from core.analysis import analyse
 from core.results import Analysis
 from core.session import Session
+from core.signal.filters import FILTER
 from devices.simulation.walker import SimulatedSession, WalkerSettings, simulate
 
 ROOT = Path(__file__).parents[1]
@@ -87,7 +88,7 @@ def code_digest(root: Path) -> str:
     for file in sorted(file for folder in ("core", "devices") for file in (root / folder).rglob("*.py")):
         found.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     found.update(
-        repr([platform.machine(), platform.python_version(), *map(version, ("numpy", "scipy", "vqf"))]).encode()
+        repr([platform.machine(), platform.python_version(), *map(version, ("numpy", "scipy")), FILTER]).encode()
     )
     return found.hexdigest()
 

@@ -63,9 +63,7 @@ def viewer_program() -> Path | None:
 def why_not(program: Path | None) -> str:
     """Say why nothing can be shown here; empty where it can."""
     if program is None:
-        return tr(
-            "Rerun is not installed on this computer. Open session.rrd from the results on a computer that has Rerun."
-        )
+        return tr("Rerun is not installed on this computer. Open the session on a computer that has Rerun.")
     has_screen = any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
     if sys.platform.startswith("linux") and not has_screen:
         return tr(

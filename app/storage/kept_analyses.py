@@ -22,12 +22,13 @@ from core.prosthesis import prostheses_text
 from core.results import Analysis
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, Session
+from core.signal.filters import FILTER
 from core.timed.protocols import planned_text
 
 _log = logging.getLogger(__name__)
 
 CODE = Path(__file__).parents[2] / "core"
-FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may give another last bit
+FIGURES_FROM = ("gaitwright", "numpy", "scipy")  # and the filter: another version may give another last bit
 
 
 def bare(session: Session) -> Session:
@@ -142,7 +143,7 @@ def algorithm() -> str:
     for path in sorted(CODE.rglob("*.py")):
         source.update(str(path.relative_to(CODE)).encode() + b"\0" + path.read_bytes() + b"\0")
     versions = [f"{name} {_version(name)}" for name in FIGURES_FROM]
-    return ", ".join([*versions, f"core {source.hexdigest()}"])
+    return ", ".join([*versions, FILTER, f"core {source.hexdigest()}"])
 
 
 def _version(distribution: str) -> str:

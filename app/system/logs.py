@@ -31,7 +31,16 @@ FILE_NAME = "gaitwright.log"
 FILE_BYTES, OLD_FILES = 1_000_000, 4
 LONGEST_CHAIN = 5  # exceptions of exceptions
 REPORTED_LINES = 200
-NAMED_LIBRARIES = ("PySide6-Essentials", "numpy", "scipy", "SQLAlchemy", "sqlcipher3", "cryptography", "rerun-sdk")
+NAMED_LIBRARIES = (
+    "PySide6-Essentials",
+    "numpy",
+    "scipy",
+    "vqf",
+    "SQLAlchemy",
+    "sqlcipher3",
+    "cryptography",
+    "rerun-sdk",
+)
 
 _log = logging.getLogger(__name__)
 

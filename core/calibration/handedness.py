@@ -15,11 +15,11 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
-from vqf import offlineVQF
 
 from core.body import Joint, Side, Site
 from core.calibration.identify import decide, disagreement_about, moving_data
 from core.samples import FloatArray, ImuBlock, RateKind
+from core.signal.filters import filtered_offline
 from core.signal.orientation import oriented
 from core.signal.pair import OrientedTrack, pair_up
 from core.signal.rotations import matrix_from_quaternion
@@ -120,7 +120,7 @@ def turn_about_vertical(block: ImuBlock) -> Turn:
     gyr, acc, time_s = (_means(v, width) for v in (track.gyr_rad_s, track.acc_m_s2, track.time_s))
     step_s = width * track.step_s
     # a filter that does not estimate the gyroscopes' bias finds reversed accelerometers where there are none
-    vertical = matrix_from_quaternion(offlineVQF(gyr, acc, None, step_s)["quat6D"])[:, 2]
+    vertical = matrix_from_quaternion(filtered_offline(gyr, acc, None, step_s))[:, 2]
     return Turning(track, time_s, sosfiltfilt(_low_pass(step_s), np.sum(gyr * vertical, axis=1)))
 
 

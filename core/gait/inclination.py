@@ -7,10 +7,10 @@ is.
 """
 
 import numpy as np
-from vqf import offlineVQF
 
 from core.gait.strides import Strides
 from core.samples import FloatArray
+from core.signal.filters import filtered_offline
 from core.signal.rotations import joint_frame, wrap
 
 G_M_S2 = 9.81
@@ -66,7 +66,7 @@ def tilt_by_speeding_up(strides: Strides, time_s: FloatArray) -> FloatArray:
         moving[here] = np.interp(coarse_s[here], middle_s[mine], velocity[mine])
     gained = np.gradient(moving, COARSE_S)
     force = np.column_stack([gained.real, gained.imag, np.full(len(gained), G_M_S2)])
-    turned = offlineVQF(np.zeros_like(force), force, None, COARSE_S)["quat6D"]
+    turned = filtered_offline(np.zeros_like(force), force, None, COARSE_S)
     heading = np.interp(coarse_s, middle_s, heading_rad)
     forward = (-2.0 * turned[:, 2] + 2j * turned[:, 1]) * np.exp(-1j * heading)
     return np.asarray(np.interp(time_s, coarse_s, forward.real))

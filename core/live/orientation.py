@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from vqf import VQF
 
 from core.live.streams import EvenSamples
 from core.samples import BoolArray, FloatArray, IntArray, RateKind
+from core.signal.filters import live_filter
 from core.signal.orientation import interval_rates
 
 TAU_ACC_S = 2.0  # walking needs more than a step; with the customary 3 s the ankle is off by a third more
@@ -81,7 +81,7 @@ class LiveOrientation:
     def __init__(self, bias_rad_s: FloatArray, rate_kind: RateKind, step_s: float) -> None:
         self._bias_rad_s = bias_rad_s
         self._is_averaged = rate_kind is RateKind.AVERAGED
-        self._filter = VQF(step_s, tauAcc=TAU_ACC_S, biasSigmaInit=BIAS_SD_DEG_S)
+        self._filter = live_filter(step_s, TAU_ACC_S, BIAS_SD_DEG_S)
         self._next: int | None = None
         self._last_rate = np.zeros((1, 3))
         self._must_skip = False
@@ -90,8 +90,8 @@ class LiveOrientation:
     def begin_again(self, bias_rad_s: FloatArray, rest: EvenSamples) -> None:
         """Go on with another bias (3,), settled in the rest that showed it: as after a gap of one sample."""
         rates = rest.gyr_rad_s - bias_rad_s
-        self._filter.resetState()
-        self._filter.updateBatch(np.ascontiguousarray(rates), np.ascontiguousarray(rest.acc_m_s2))
+        self._filter.reset()
+        self._filter.update(rates, rest.acc_m_s2)
         self._bias_rad_s, self._last_rate = bias_rad_s, rates[-1:]
         self._next, self._must_skip = int(rest.tick[-1]) + 2, True
 
@@ -111,19 +111,17 @@ class LiveOrientation:
         tick, rates, acc = even.tick[which], even.gyr_rad_s[which] - self._bias_rad_s, even.acc_m_s2[which]
         ended = NOTHING
         if tick[0] != self._next:
-            bias = self._filter.getBiasEstimate()
-            self._filter.resetState()
+            bias = self._filter.bias()
+            self._filter.reset()
             if self._next is not None:  # a gap makes no other sensor of it
-                self._filter.setBiasEstimate(*bias)
+                self._filter.set_bias(*bias)
             self._last_rate = rates[:1]
             ended, self._held = self._held, NOTHING
         self._next = int(tick[-1]) + 1
         between = interval_rates(np.concatenate([self._last_rate, rates]))[1:]
         self._last_rate = rates[-1:]
-        turned = self._filter.updateBatch(
-            np.ascontiguousarray(rates if self._is_averaged else between), np.ascontiguousarray(acc)
-        )
-        signals = np.concatenate([turned["quat6D"], rates, acc], axis=1)
+        turned = self._filter.update(rates if self._is_averaged else between, acc)
+        signals = np.concatenate([turned, rates, acc], axis=1)
         new = OrientedSamples(tick, even.time_s[which], signals, even.is_measured[which])
         if not self._is_averaged:
             return [new]

@@ -8,9 +8,9 @@ its predecessor; a rate that the device has averaged over the past interval is u
 from dataclasses import replace
 
 import numpy as np
-from vqf import VQF, offlineVQF
 
 from core.samples import FloatArray, RateKind
+from core.signal.filters import filtered_offline
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import Track
 
@@ -37,13 +37,8 @@ def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> 
         instants[:-1] = 0.5 * (rates[:-1] + rates[1:])
     else:
         intervals, instants = interval_rates(rates), rates
-    turned = offlineVQF(np.ascontiguousarray(intervals), np.ascontiguousarray(track.acc_m_s2), None, track.step_s)
-    return OrientedTrack(replace(track, gyr_rad_s=instants), turned["quat6D"])
-
-
-def accelerometer_time_constant_s() -> float:
-    """Give the time constant by which VQF corrects the vertical from the accelerometer, as the filter has it."""
-    return float(VQF(1.0).params["tauAcc"])
+    turned = filtered_offline(intervals, track.acc_m_s2, None, track.step_s)
+    return OrientedTrack(replace(track, gyr_rad_s=instants), turned)
 
 
 def as_of_intervals(one: OrientedTrack) -> OrientedTrack:
@@ -66,9 +61,8 @@ def oriented_to_north(track: Track) -> OrientedTrack | None:
     if track.q_device is not None and np.isfinite(track.q_device).all():
         return OrientedTrack(track, track.q_device)
     if track.mag is not None and np.isfinite(track.mag).all():
-        rates, acc, mag = interval_rates(track.gyr_rad_s), track.acc_m_s2, track.mag
-        turned = offlineVQF(*(np.ascontiguousarray(v) for v in (rates, acc, mag)), track.step_s)
-        return OrientedTrack(track, turned["quat9D"])
+        rates = interval_rates(track.gyr_rad_s)
+        return OrientedTrack(track, filtered_offline(rates, track.acc_m_s2, track.mag, track.step_s))
     return None
 
 

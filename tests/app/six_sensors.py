@@ -19,6 +19,7 @@ import numpy as np
 from app.exports.result_folder import write_results
 from core.body import Side, Site
 from core.session import Session
+from core.signal.filters import FILTER
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
 from tests.simulated import analysis_of, session_of
 
@@ -50,7 +51,7 @@ def vectors() -> str:
 
 def machine() -> dict[str, str]:
     """What the last digits of a result depend on, besides `vectors`."""
-    parts = {name: version(name) for name in ("numpy", "scipy", "vqf", "pyarrow")}
+    parts = {name: version(name) for name in ("numpy", "scipy", "pyarrow")} | {"vqf": FILTER.removeprefix("vqf ")}
     return {"machine": platform.machine(), "system": platform.system(), **parts}
 
 

@@ -113,6 +113,7 @@ def knee() -> Trial:
 
 
 def test_vqf_with_the_true_axes_gives_the_true_knee(knee: Trial) -> None:
+    pytest.importorskip("vqf", reason="it has no wheel here")
     for run, limit_deg in ((vqf_angle.offline, 0.5), (vqf_angle.online, 1.5)):
         angle = vqf_angle.angle(knee, run, knee.truth.axis_1, knee.truth.axis_2)
         time_s = knee.step_s * np.arange(len(angle))

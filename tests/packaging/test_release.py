@@ -4,6 +4,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
@@ -29,3 +30,25 @@ def test_the_conda_recipe_needs_what_the_project_needs() -> None:
     assert given.pop("python") == Requirement(f"python {project['requires-python']}").specifier
     assert given == {OTHERWISE_NAMED.get(name, name): limits for name, limits in required.items()}
     assert f'version: "{project["version"]}"' in recipe
+
+
+@pytest.mark.parametrize(
+    ("system", "machine", "python", "missing"),
+    [
+        ("linux", "x86_64", "3.13", set()),
+        ("win32", "AMD64", "3.11", set()),
+        ("darwin", "arm64", "3.12", set()),
+        ("linux", "x86_64", "3.14", {"vqf"}),
+        ("linux", "aarch64", "3.12", {"vqf"}),
+        ("win32", "ARM64", "3.13", {"vqf", "rerun-sdk"}),
+        ("darwin", "arm64", "3.14", {"vqf"}),
+        ("darwin", "x86_64", "3.13", {"rerun-sdk"}),
+    ],
+)
+def test_a_part_without_a_wheel_for_a_computer_is_not_asked_for_there(
+    system: str, machine: str, python: str, missing: set[str]
+) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    place = {"sys_platform": system, "platform_machine": machine, "python_version": python}
+    needs = [Requirement(one) for one in project["dependencies"]]
+    assert {one.name for one in needs if one.marker is not None and not one.marker.evaluate(place)} == missing

@@ -1,6 +1,7 @@
 """Which software writes results: another one may write other bytes.
 
-It is found without importing any of what computes, since a cluster's workers are asked for it before all else.
+It is found without importing any of what computes, since a cluster's workers are asked for it before all else. Where
+`vqf` is "not installed", our own port of it computes, whose source is digested with the rest.
 """
 
 import hashlib

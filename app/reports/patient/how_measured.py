@@ -25,7 +25,7 @@ from core.parameters import KNEE_RANGE
 from core.prosthesis import JointNature
 from core.results import AxisSource, Method
 from core.samples import ImuBlock, RateKind, SensorInfo
-from core.signal.orientation import accelerometer_time_constant_s
+from core.signal.published_filter import TAU_ACC_S
 from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 from core.verdicts.norms import KNEE_OVERREAD
 from core.verdicts.sigmas import ComparisonKind, in_use
@@ -166,7 +166,7 @@ def _angles(facts: Facts) -> str:
         "angle from bony landmarks. Flexion and dorsiflexion are positive. Angles are not filtered; "
         "gaps up to {gap} s are bridged."
     ).format(
-        tau=fixed(accelerometer_time_constant_s(), 0),
+        tau=fixed(TAU_ACC_S, 0),
         kind=kinds[_kind(facts)],
         angle=angle,
         gap=fixed(MAX_REPORTED_GAP_S, 2),

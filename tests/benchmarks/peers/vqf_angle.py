@@ -8,7 +8,6 @@ that lays one axis on the other, in closed form over adjacent windows; the angle
 from collections.abc import Callable
 
 import numpy as np
-from vqf import VQF, offlineVQF
 
 from core.calibration.zero import standing_twist
 from core.samples import FloatArray, RateKind
@@ -22,11 +21,15 @@ Filter = Callable[[FloatArray, FloatArray, float], FloatArray]
 
 def online(gyr_rad_s: FloatArray, acc_m_s2: FloatArray, step_s: float) -> FloatArray:
     """Earth from sensor (n, 4), from the past alone."""
+    from vqf import VQF  # which has no wheel for every computer
+
     return np.asarray(VQF(step_s).updateBatch(gyr_rad_s, acc_m_s2)["quat6D"])
 
 
 def offline(gyr_rad_s: FloatArray, acc_m_s2: FloatArray, step_s: float) -> FloatArray:
     """Earth from sensor (n, 4), from past and future."""
+    from vqf import offlineVQF  # as above
+
     return np.asarray(offlineVQF(gyr_rad_s, acc_m_s2, None, step_s)["quat6D"])
 
 
