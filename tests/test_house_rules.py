@@ -310,6 +310,7 @@ CALLERS = {
     *("bluetooth.py", "channels.py", "dot.py", "lsl.py", "networks.py", "search.py", "transports.py"),  # sensors
     *("engine.py", "journal_store.py", "logins.py"),  # the clinic's server and shared place
     *("cluster.py", "task.py"),  # a batch's workers, by --dask
+    "web_socket.py",  # the live output: this computer alone
 }
 
 
