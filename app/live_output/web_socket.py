@@ -28,6 +28,7 @@ ORIGINS = (
 )
 MOST_CLIENTS = 8
 MOST_CONNECTIONS = 32  # with those that have not introduced themselves yet
+BACKLOG = 16  # of those not accepted yet; as many are accepted at once, before any of them can be refused
 MOST_BEHIND = 256 * 1024  # bytes that a client has not fetched, five seconds of six sensors
 SEND_BUFFER = 64 * 1024  # bytes that the system holds besides
 MOST_RECEIVED = 1024  # bytes of a message; none is read
@@ -46,7 +47,7 @@ def listening_sockets(port: int) -> list[socket.socket]:
         for address in ADDRESSES:
             family = socket.AF_INET6 if ":" in address else socket.AF_INET
             try:
-                one = socket.create_server((address, port), family=family, backlog=MOST_CONNECTIONS)
+                one = socket.create_server((address, port), family=family, backlog=BACKLOG)
             except OSError as problem:
                 if family is socket.AF_INET6 and problem.errno in NO_IPV6:
                     continue
@@ -89,6 +90,7 @@ class WebSocketServer:
             server = await library.serve(
                 self._serve,
                 sock=one,
+                backlog=BACKLOG,
                 origins=ORIGINS,
                 compression=None,
                 server_header=None,
@@ -109,6 +111,8 @@ class WebSocketServer:
             connection.transport.abort()
         for server in self._servers:
             await server.wait_closed()
+        for one in self._sockets:  # also of a server that was stopped before it served
+            one.close()
 
     def send(self, line: str) -> None:
         """Hand a line to every client, waiting for none; one that is too far behind is closed."""
@@ -123,14 +127,12 @@ class WebSocketServer:
     async def _serve(self, connection: library.ServerConnection) -> None:
         self._numbers += 1
         try:
-            for line in self._welcome():
-                await connection.send(line)
             self._clients[connection] = f"client {self._numbers}"
+            for line in self._welcome():
+                library.broadcast([connection], line)
             with suppress(ConnectionClosed):
                 await connection.recv()  # until it goes; who sends anything is shown out
                 await connection.close(1003, "nothing is received here")
-        except ConnectionClosed:
-            pass
         finally:
             self._clients.pop(connection, None)
 
