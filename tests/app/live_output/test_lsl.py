@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import pylsl
+import pylsl.util
 import pytest
-
-pylsl = pytest.importorskip("pylsl", reason="Lab Streaming Layer is an extra")
 
 from app.live_output import output as module
 from app.live_output.chunks import LiveChunk

@@ -39,7 +39,6 @@ def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch:
 
 
 def test_the_watch_on_sockets_sees_those_that_are_opened(output: LiveOutput, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("websockets", reason="the WebSocket is an extra")
     output.set_up(Wanted(has_websocket=True))
     assert threads() == ["live output"]
     assert output_words(output).startswith(f"Live output is on: WebSocket, port {output.port}.")
@@ -58,7 +57,6 @@ def test_without_the_library_the_websocket_names_what_to_install(
 
 
 def test_a_port_that_is_taken_is_stated(output: LiveOutput) -> None:
-    pytest.importorskip("websockets", reason="the WebSocket is an extra")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         output.set_up(Wanted(has_websocket=True, port=port))

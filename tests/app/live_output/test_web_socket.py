@@ -11,9 +11,6 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-
-pytest.importorskip("websockets", reason="the WebSocket is an extra")  # before what imports it
-
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
