@@ -23,16 +23,12 @@ def install_words(extra: str) -> str:
 
 def output_words(output: LiveOutput) -> str:
     """Say for whoever is recording what is sent, or why nothing is; empty where nothing was switched on."""
-    on = [tr("Lab Streaming Layer")] if output.has_lsl else []
+    on = ["LSL"] if output.has_lsl else []
     if output.port:
-        on.append(tr("WebSocket, port {port}").format(port=output.port))
+        on.append(tr("WebSocket ({count} connected)").format(count=output.status.clients))
     stated = [tr("Live output is on: {outlets}.").format(outlets=", ".join(on))] if on else []
-    if output.port:
-        count = output.status.clients
-        stated.append(tr_n("{count} program is connected.", "{count} programs are connected.", count))
-    if output.status.dropped:
-        dropped = output.status.dropped
-        stated.append(tr_n("{count} sample was dropped.", "{count} samples were dropped.", dropped))
+    if count := output.status.dropped:
+        stated.append(tr_n("{count} sample was dropped.", "{count} samples were dropped.", count).format(count=count))
     if output.status.latest_closed:
         stated.append(tr("A program was too slow and was disconnected."))
     for name in output.trouble:

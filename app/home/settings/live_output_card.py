@@ -32,7 +32,7 @@ class LiveOutputCard(SettingsCard):
         self.websocket_stated = Text(weight=MEDIUM, wraps=True)
         self.fill(Text(hint, tone="ink2", wraps=True))
         self.add_left(self.lsl)
-        self.fill(self.lsl_stated, Text(lsl_hint, tone="ink2", wraps=True))
+        self.fill(Text(lsl_hint, tone="ink2", wraps=True), self.lsl_stated)
         self.add_left(self.websocket)
         self.fill(self.port, self.websocket_stated)
         self.port.committed.connect(self._on_port_committed)

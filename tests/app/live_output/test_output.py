@@ -41,7 +41,7 @@ def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch:
 def test_the_watch_on_sockets_sees_those_that_are_opened(output: LiveOutput, monkeypatch: pytest.MonkeyPatch) -> None:
     output.set_up(Wanted(has_websocket=True))
     assert threads() == ["live output"]
-    assert output_words(output).startswith(f"Live output is on: WebSocket, port {output.port}.")
+    assert output_words(output) == "Live output is on: WebSocket (0 connected)."
     output.stop()
     assert threads() == []
 
