@@ -2,7 +2,9 @@
 
 import json
 import math
+import re
 import sys
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -20,6 +22,7 @@ from devices.drivers.lsl import ask_in
 from devices.live import SourceRefusedError
 from devices.transport.networks import THIS_COMPUTER
 from tests.app.live_output.known_walk import BEGAN_S, RATE_HZ, STREAMS, samples, walk
+from tests.examples import live_lsl
 from tests.waiting import PATIENCE_S, wait_for
 
 COUNT = 1000
@@ -132,6 +135,26 @@ def test_streams_stay_where_an_estimator_is_replaced_and_go_with_the_page(
         return False
 
     wait_for(is_lost)
+
+
+def test_the_example_prints_what_is_streamed(on: LiveOutput, capsys: pytest.CaptureFixture[str]) -> None:
+    over = threading.Event()
+
+    def send_until_over() -> None:
+        while not over.is_set():  # it is not known when the example has found the streams
+            send(on, walk(100))
+            over.wait(0.05)
+
+    sender = threading.Thread(target=send_until_over)
+    sender.start()
+    try:
+        live_lsl.main(1.0)
+    finally:
+        over.set()
+        sender.join()
+    printed = capsys.readouterr().out
+    assert re.search(r"^\d+\.\d{3} Gaitwright left_knee: \d+\.\d+ 1\.5 1\.0$", printed, re.MULTILINE)
+    assert re.search(r"^\d+\.\d{3} Gaitwright events: left_initial_contact$", printed, re.MULTILINE)
 
 
 def test_another_network_that_is_searched_already_is_named(output: LiveOutput, monkeypatch: pytest.MonkeyPatch) -> None:
