@@ -27,7 +27,7 @@ from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 from app.help.help_topics import Topic
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
-from app.live_output.output import Wanted, live_output
+from app.live_output.output import OutputSettings, live_output
 from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
 from app.system.qt_messages import log_qt_messages
@@ -484,7 +484,7 @@ class MainWindow(QWidget):
 
     def _on_theme_changed(self) -> None:
         kept = self._settings
-        live_output.set_up(Wanted(kept.has_live_lsl, kept.has_live_websocket, kept.live_port))
+        live_output.set_up(OutputSettings(kept.has_live_lsl, kept.has_live_websocket, kept.live_port))
         self._settings.scale = current_theme().scale  # also when the keys changed it
         self._fit()
 

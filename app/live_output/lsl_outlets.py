@@ -1,7 +1,7 @@
 """Streams of Lab Streaming Layer: one for each joint, one of the feet's events, one of the status.
 
 The library names this computer in every stream by itself and listens to all networks of the computer; what can be set
-is that nobody is led here who searches from another computer. The manual tells both.
+is that nobody is led here who searches from another computer. The manual has both.
 """
 
 from types import ModuleType

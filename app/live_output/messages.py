@@ -24,7 +24,7 @@ class Status:
     events: int
     dropped: int
     missing: tuple[str, ...]
-    events_withheld: tuple[str, ...]
+    doubtful_feet: tuple[str, ...]
     clients: int = 0
     closed: int = 0
     latest_closed: str = ""

@@ -38,7 +38,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class OutputSettings:
     """What is switched on."""
 
     has_lsl: bool = False
@@ -59,14 +59,14 @@ class LiveOutput:
 
     Attributes
     ----------
-    wanted
+    settings
         What is switched on.
     trouble
         Why one of them is off all the same, by "lsl" and "websocket".
     """
 
     def __init__(self) -> None:
-        self.wanted = Wanted()
+        self.settings = OutputSettings()
         self.trouble: dict[str, OutputRefusedError] = {}
         self._sender: _Sender | None = None
         self._streams: LiveStreams | None = None
@@ -89,28 +89,28 @@ class LiveOutput:
         """As it left last."""
         return NO_WALK if self._sender is None else self._sender.status
 
-    def set_up(self, wanted: Wanted) -> None:
-        """Switch on and off as is wanted; what is wrong is in `trouble`."""
-        if wanted == self.wanted:
+    def set_up(self, settings: OutputSettings) -> None:
+        """Switch on and off as these ask; what is wrong is in `trouble`."""
+        if settings == self.settings:
             return
         self.stop()
-        self.wanted = wanted
+        self.settings = settings
         lsl, server, sockets = None, None, []
-        if wanted.has_lsl:
+        if settings.has_lsl:
             try:
                 lsl = LslOutlets()
             except SourceRefusedError as problem:
                 other = str(problem.values.get("other", ""))
                 self.trouble["lsl"] = OutputRefusedError("" if other else "lsl", other)
-        if wanted.has_websocket:
+        if settings.has_websocket:
             try:
                 from app.live_output import web_socket  # an extra
 
-                sockets, server = web_socket.listening_sockets(wanted.port), web_socket.WebSocketServer
+                sockets, server = web_socket.listening_sockets(settings.port), web_socket.WebSocketServer
             except ImportError:
                 self.trouble["websocket"] = OutputRefusedError("live")
             except OSError as problem:
-                _log.warning("live output: port %d: %s", wanted.port, errno.errorcode.get(problem.errno or 0, "?"))
+                _log.warning("live output: port %d: %s", settings.port, errno.errorcode.get(problem.errno or 0, "?"))
                 self.trouble["websocket"] = OutputRefusedError(is_port_taken=True)
         if lsl is not None or server is not None:
             self._sender = _Sender(lsl, server, sockets)
@@ -120,7 +120,7 @@ class LiveOutput:
     def stop(self) -> None:
         """Switch all off; sockets are closed when it returns."""
         sender, self._sender = self._sender, None
-        self.wanted, self.trouble = Wanted(), {}
+        self.settings, self.trouble = OutputSettings(), {}
         if sender is not None:
             sender.close()
 
@@ -278,11 +278,11 @@ class _Sender:
             samples=sum(self._sent.values()),
             events=events,
             missing=tuple(site.value for site in chunk.missing),
-            events_withheld=tuple(side.value for side in chunk.doubtful),
+            doubtful_feet=tuple(side.value for side in chunk.doubtful),
         )
 
     def _in_order(self, joint: Joint, time_s: FloatArray) -> FloatArray:
-        """A clock that is fitted anew may step back by a little: no stamp is earlier than the one before."""
+        """A clock that is fitted again may step back by a little: no stamp is earlier than the one before."""
         ordered = np.maximum.accumulate(np.maximum(time_s, self._latest_s.get(joint, -np.inf)))
         self._latest_s[joint] = float(ordered[-1])
         return ordered

@@ -33,5 +33,5 @@ def output_words(output: LiveOutput) -> str:
         stated.append(tr("A program was too slow and was disconnected."))
     for name in output.trouble:
         off = tr("Live output is off: {reason}")
-        stated.append(off.format(reason=refusal_words(output.trouble[name], output.wanted.port)))
+        stated.append(off.format(reason=refusal_words(output.trouble[name], output.settings.port)))
     return " ".join(stated)

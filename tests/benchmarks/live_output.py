@@ -29,7 +29,7 @@ import numpy as np
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.live_sensors import live_sensors
 from app.live_output.chunks import LiveChunk, LiveStreams
-from app.live_output.output import LiveOutput, Wanted
+from app.live_output.output import LiveOutput, OutputSettings
 from app.main_window import SWITCH_S
 from app.storage.journal.writer import JournalWriter
 from app.wizard.walking.estimator import WalkingEstimator
@@ -159,7 +159,7 @@ def run(seconds: float) -> None:
     try:
         sensors = live_sensors(site_of, stood(acquisition).state.standing.rest, acquisition.status())
         estimator = WalkingEstimator(site_of, sensors, calibration)
-        output.set_up(Wanted(has_lsl=True, has_websocket=True, port=0))
+        output.set_up(OutputSettings(has_lsl=True, has_websocket=True, port=0))
         assert not output.trouble
         output.open_streams(LiveStreams(estimator.rates_hz, tuple(Side), is_simulated=True))
         programs = {

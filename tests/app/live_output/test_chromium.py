@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from websockets.sync.client import connect
 
-from app.live_output.output import LiveOutput, Wanted
+from app.live_output.output import LiveOutput, OutputSettings
 from tests.app.live_output.known_walk import BEGAN_S, STREAMS, walk
 from tests.waiting import PATIENCE_S, wait_for
 
@@ -60,7 +60,7 @@ class Browser:
 
 @pytest.fixture
 def on(output: LiveOutput) -> LiveOutput:
-    output.set_up(Wanted(has_websocket=True, port=0))
+    output.set_up(OutputSettings(has_websocket=True, port=0))
     output.open_streams(STREAMS)
     return output
 

@@ -15,7 +15,7 @@ import pytest
 
 from app.live_output import output as module
 from app.live_output.chunks import LiveChunk
-from app.live_output.output import LiveOutput, Wanted
+from app.live_output.output import LiveOutput, OutputSettings
 from core.body import LEG_JOINTS, Joint
 from core.verdicts.model import Verdict
 from devices.drivers.lsl import ask_in
@@ -30,7 +30,7 @@ COUNT = 1000
 
 @pytest.fixture
 def on(output: LiveOutput) -> LiveOutput:
-    output.set_up(Wanted(has_lsl=True))
+    output.set_up(OutputSettings(has_lsl=True))
     if output.trouble:  # another test of this process has searched a network
         pytest.skip("Lab Streaming Layer searches another network here")
     output.open_streams(STREAMS)
@@ -162,7 +162,7 @@ def test_another_network_that_is_searched_already_is_named(output: LiveOutput, m
         raise SourceRefusedError("Lab Streaming Layer already searches the network of {other}", "", other="192.0.2.1")
 
     monkeypatch.setattr(module, "LslOutlets", refuse)
-    output.set_up(Wanted(has_lsl=True))
+    output.set_up(OutputSettings(has_lsl=True))
     assert output.trouble["lsl"].other == "192.0.2.1"
     assert not output.is_on
 
@@ -175,5 +175,5 @@ def test_without_the_library_it_is_named(output: LiveOutput, monkeypatch: pytest
     except SourceRefusedError as refused:
         if "not installed" not in refused.what:
             pytest.skip("Lab Streaming Layer searches another network here")
-    output.set_up(Wanted(has_lsl=True))
+    output.set_up(OutputSettings(has_lsl=True))
     assert output.trouble["lsl"].extra == "lsl"

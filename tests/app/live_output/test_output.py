@@ -7,7 +7,7 @@ import threading
 import pytest
 
 import app.live_output
-from app.live_output.output import LiveOutput, Wanted
+from app.live_output.output import LiveOutput, OutputSettings
 from app.live_output.words import output_words
 from tests.app.live_output.known_walk import BEGAN_S, STREAMS, walk
 
@@ -26,7 +26,7 @@ def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch:
 
     monkeypatch.setattr(socket.socket, "__init__", watched)
     assert not output.is_on
-    output.set_up(Wanted())
+    output.set_up(OutputSettings())
     output.open_streams(STREAMS)
     output.begin_walk(BEGAN_S, BEGAN_S)
     for chunk in walk(100):
@@ -39,7 +39,7 @@ def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch:
 
 
 def test_the_watch_on_sockets_sees_those_that_are_opened(output: LiveOutput, monkeypatch: pytest.MonkeyPatch) -> None:
-    output.set_up(Wanted(has_websocket=True))
+    output.set_up(OutputSettings(has_websocket=True))
     assert threads() == ["live output"]
     assert output_words(output) == "Live output is on: WebSocket (0 connected)."
     output.stop()
@@ -51,7 +51,7 @@ def test_without_the_library_the_websocket_names_what_to_install(
 ) -> None:
     monkeypatch.setitem(sys.modules, "app.live_output.web_socket", None)
     monkeypatch.delattr(app.live_output, "web_socket", raising=False)  # where another test has loaded it
-    output.set_up(Wanted(has_websocket=True, port=8765))
+    output.set_up(OutputSettings(has_websocket=True, port=8765))
     assert not output.is_on
     assert "gaitwright[live]" in output_words(output)
 
@@ -59,5 +59,5 @@ def test_without_the_library_the_websocket_names_what_to_install(
 def test_a_port_that_is_taken_is_stated(output: LiveOutput) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        output.set_up(Wanted(has_websocket=True, port=port))
+        output.set_up(OutputSettings(has_websocket=True, port=port))
     assert output_words(output) == (f"Live output is off: Another program uses port {port}. Enter another port.")

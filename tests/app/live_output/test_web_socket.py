@@ -16,7 +16,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from app.live_output import messages
 from app.live_output.chunks import LiveChunk
-from app.live_output.output import MOST_WAITING, LiveOutput, Wanted
+from app.live_output.output import MOST_WAITING, LiveOutput, OutputSettings
 from app.live_output.web_socket import BACKLOG, MOST_CLIENTS, MOST_CONNECTIONS, listening_sockets
 from core.body import LEG_JOINTS, Joint
 from core.verdicts.model import Verdict
@@ -28,7 +28,7 @@ ANY_PORT = 0
 
 @pytest.fixture
 def on(output: LiveOutput) -> LiveOutput:
-    output.set_up(Wanted(has_websocket=True, port=ANY_PORT))
+    output.set_up(OutputSettings(has_websocket=True, port=ANY_PORT))
     output.open_streams(STREAMS)
     return output
 
@@ -109,8 +109,8 @@ def test_what_is_not_reported_has_no_number(on: LiveOutput) -> None:
     with client(on) as one:
         one.recv(timeout=PATIENCE_S)
         send(on, chunks)
-        withheld, reported = of_kind(received(one), "angles")
-    assert (withheld["deg"], withheld["sd_deg"], withheld["status"]) == ([None] * 3, [None] * 3, ["withheld"] * 3)
+        unreported, reported = of_kind(received(one), "angles")
+    assert (unreported["deg"], unreported["sd_deg"], unreported["status"]) == ([None] * 3, [None] * 3, ["withheld"] * 3)
     assert (reported["deg"], reported["status"]) == ([3.0, 4.0, 5.0], ["read"] * 3)
 
 
@@ -167,11 +167,11 @@ def test_nothing_listens_but_on_the_loopback_addresses() -> None:
 
 def test_a_port_of_another_program_is_named_and_the_rest_goes_on(output: LiveOutput) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        output.set_up(Wanted(has_websocket=True, port=taken.getsockname()[1]))
+        output.set_up(OutputSettings(has_websocket=True, port=taken.getsockname()[1]))
         assert output.trouble["websocket"].is_port_taken
         assert not output.is_on
         output.take(walk(6)[0])
-    output.set_up(Wanted(has_websocket=True, port=ANY_PORT))
+    output.set_up(OutputSettings(has_websocket=True, port=ANY_PORT))
     assert output.trouble == {}
     assert output.is_on
 

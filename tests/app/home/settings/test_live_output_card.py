@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home.settings.live_output_card import LiveOutputCard
 from app.home.settings.live_output_control import LiveOutputControl
-from app.live_output.output import Wanted, live_output
+from app.live_output.output import OutputSettings, live_output
 from app.system.settings import LIVE_PORT, Settings
 
 
@@ -20,7 +20,9 @@ def settings(tmp_path: Path) -> Iterator[Settings]:
     """Applied to the live output as the window does."""
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     settings.changed.connect(
-        lambda: live_output.set_up(Wanted(settings.has_live_lsl, settings.has_live_websocket, settings.live_port))
+        lambda: live_output.set_up(
+            OutputSettings(settings.has_live_lsl, settings.has_live_websocket, settings.live_port)
+        )
     )
     yield settings
     live_output.stop()
@@ -60,7 +62,7 @@ def test_what_is_switched_on_is_kept_and_stated(card: LiveOutputCard, settings: 
     assert settings.has_live_websocket
     assert card.websocket_stated.text() == f"On at ws://127.0.0.1:{port}."
     card.websocket.click()
-    assert not settings.has_live_websocket
+    assert not card.websocket.isChecked()
     assert not card.websocket_stated.isVisible()
     assert not live_output.is_on
 
@@ -90,7 +92,7 @@ def test_a_damaged_port_counts_as_none(tmp_path: Path, kept: str) -> None:
     assert Settings(file).live_port == LIVE_PORT
 
 
-def test_where_libraries_are_missing_it_says_what_to_install(
+def test_where_libraries_are_missing_what_to_install_is_stated(
     qtbot: QtBot, settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.home.settings.live_output_control.find_spec", lambda _name: None)

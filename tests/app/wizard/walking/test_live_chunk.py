@@ -56,7 +56,7 @@ def test_an_angle_that_is_not_reported_leaves_without_its_number(verdict: Verdic
     assert statuses == [2, 2]
 
 
-def test_a_gap_has_no_number_and_says_so_while_the_samples_beside_it_stay() -> None:
+def test_a_gap_has_no_number_and_the_samples_beside_it_stay() -> None:
     angles, statuses = given(joint_of(10.0, math.nan, 20.0))
     assert statuses == [0, 2, 0]
     assert math.isnan(angles[1])

@@ -16,7 +16,7 @@ from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 from websockets.sync.client import connect
 
-from app.live_output.output import Wanted, live_output
+from app.live_output.output import OutputSettings, live_output
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -36,7 +36,7 @@ PLANTED = Patient(code="DEMO-QXZVQ", birth_year=1957, sex="female", prosthetic_s
 def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: PatientTime) -> Iterator[WalkingStep]:
     begin(qtbot, visit, worn, PLANTED)
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
-    live_output.set_up(Wanted(has_lsl=True, has_websocket=True, port=0))
+    live_output.set_up(OutputSettings(has_lsl=True, has_websocket=True, port=0))
     assert live_output.port
     step = WalkingStep(visit)
     qtbot.addWidget(step.page)
