@@ -481,10 +481,10 @@ class MainWindow(QWidget):
             theme = replace(theme, colours=DARK if is_dark else LIGHT)
         if theme != current_theme():  # in one step, since each change is written to the settings
             set_theme(theme)
-
-    def _on_theme_changed(self) -> None:
         kept = self._settings
         live_output.set_up(OutputSettings(kept.has_live_lsl, kept.has_live_websocket, kept.live_port))
+
+    def _on_theme_changed(self) -> None:
         self._settings.scale = current_theme().scale  # also when the keys changed it
         self._fit()
 

@@ -28,6 +28,7 @@ from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
 from core.targets import TargetMeasure
 from core.timed.live import LiveTest
+from core.verdicts.model import Verdict
 
 KEPT_S = 15.0
 SILENT_S = 0.5
@@ -78,7 +79,8 @@ class WalkingEstimator:
         )
         self._steps_s = {site: sensor.step_s for site, sensor in sensors.items()}
         self.rates_hz = {joint: 1.0 / self._steps_s[joint.proximal] for joint in LEG_JOINTS if joint in self.calibrated}
-        self._verdicts = {joint: verdict_by(calibration[joint]) for joint in self.calibrated}
+        self._calibration = {joint: calibration[joint] for joint in self.calibrated}
+        self._verdicts: dict[Joint, Verdict] = {}  # by that, once somebody asks
         self._curves = {
             joint: _Curve(self._steps_s[joint.proximal]) for joint in LEG_JOINTS if joint in self.calibrated
         }
@@ -115,7 +117,8 @@ class WalkingEstimator:
             joint, calibration = self._wishes.popleft()
             if joint in self._curves:
                 self._walking.recalibrate(joint, calibration)
-                self._verdicts[joint] = verdict_by(calibration)
+                self._calibration[joint] = calibration
+                self._verdicts.pop(joint, None)
         while self._hips:
             self._walking.find_hips(self._hips.popleft())
         worn = {self._site_of[name]: block for name, block in blocks.items() if name in self._site_of and len(block)}
@@ -171,6 +174,8 @@ class WalkingEstimator:
         if values and (on_value := self.on_value) is not None:
             on_value()
         if (on_chunk := self.on_chunk) is not None:
+            for joint in self._calibration.keys() - self._verdicts.keys():
+                self._verdicts[joint] = verdict_by(self._calibration[joint])
             on_chunk(chunk_of(reported, joints, self._verdicts, implausible, missing))
 
     def _hear(self, worn: Mapping[Site, ImuBlock]) -> None:
