@@ -27,7 +27,8 @@ from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 from app.help.help_topics import Topic
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
-from app.live_output.output import OutputSettings, live_output
+from app.live_output.output import live_output
+from app.live_output.status import OutputSettings
 from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
 from app.system.qt_messages import log_qt_messages

@@ -1,33 +1,18 @@
 """JSON of the live output: one message a line of text, the same words over the WebSocket and in the status stream."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from app.live_output.chunks import STATUSES, AngleChunk, EventMark, LiveStreams
+from app.live_output.status import Status
 from core.body import Joint
 from core.samples import FloatArray
 
 FORMAT = 1
 WORDS = np.array([one.value for one in STATUSES])
-
-
-@dataclass(frozen=True, slots=True)
-class Status:
-    """What is counted since the walk began. `clients`, `closed` and `latest_closed` are the WebSocket's."""
-
-    walk: str
-    simulated: bool
-    samples: int
-    events: int
-    dropped: int
-    missing: tuple[str, ...]
-    doubtful_feet: tuple[str, ...]
-    clients: int = 0
-    closed: int = 0
-    latest_closed: str = ""
 
 
 def hello(streams: LiveStreams | None) -> str:

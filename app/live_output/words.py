@@ -1,6 +1,7 @@
 """Sentences about the live output: what is on, and why something is not."""
 
-from app.live_output.output import LiveOutput, OutputRefusedError
+from app.live_output.output import LiveOutput
+from app.live_output.status import OutputRefusedError
 from app.wording.translation import tr, tr_n
 
 

@@ -29,7 +29,8 @@ import numpy as np
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.live_sensors import live_sensors
 from app.live_output.chunks import LiveChunk, LiveStreams
-from app.live_output.output import LiveOutput, OutputSettings
+from app.live_output.output import LiveOutput
+from app.live_output.status import OutputSettings
 from app.main_window import SWITCH_S
 from app.storage.journal.writer import JournalWriter
 from app.wizard.walking.estimator import WalkingEstimator

@@ -14,8 +14,8 @@ import pylsl
 
 
 def main(seconds: float) -> None:
-    streams = pylsl.resolve_bypred("starts-with(name,'Gaitwright ')", minimum=3, timeout=10.0)
-    inlets = {one.name(): pylsl.StreamInlet(one) for one in streams}
+    found = pylsl.resolve_streams(2.0)
+    inlets = {one.name(): pylsl.StreamInlet(one) for one in found if one.name().startswith("Gaitwright ")}
     end_s = monotonic() + seconds
     while monotonic() < end_s:
         for name, inlet in inlets.items():

@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 from websockets.sync.client import connect
 
-from app.live_output.output import LiveOutput, OutputSettings
+from app.live_output.output import LiveOutput
+from app.live_output.status import OutputSettings
 from tests.app.live_output.known_walk import BEGAN_S, STREAMS, walk
 from tests.waiting import PATIENCE_S, wait_for
 

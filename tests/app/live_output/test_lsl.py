@@ -13,9 +13,10 @@ import pylsl
 import pylsl.util
 import pytest
 
-from app.live_output import output as module
+from app.live_output import sender as module
 from app.live_output.chunks import LiveChunk
-from app.live_output.output import LiveOutput, OutputSettings
+from app.live_output.output import LiveOutput
+from app.live_output.status import OutputSettings
 from core.body import LEG_JOINTS, Joint
 from core.verdicts.model import Verdict
 from devices.drivers.lsl import ask_in

@@ -7,7 +7,8 @@ import threading
 import pytest
 
 import app.live_output
-from app.live_output.output import LiveOutput, OutputSettings
+from app.live_output.output import LiveOutput
+from app.live_output.status import OutputSettings
 from app.live_output.words import output_words
 from tests.app.live_output.known_walk import BEGAN_S, STREAMS, walk
 

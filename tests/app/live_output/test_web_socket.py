@@ -16,7 +16,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from app.live_output import messages
 from app.live_output.chunks import LiveChunk
-from app.live_output.output import MOST_WAITING, LiveOutput, OutputSettings
+from app.live_output.output import LiveOutput
+from app.live_output.sender import MOST_WAITING
+from app.live_output.status import OutputSettings
 from app.live_output.web_socket import BACKLOG, MOST_CLIENTS, MOST_CONNECTIONS, listening_sockets
 from core.body import LEG_JOINTS, Joint
 from core.verdicts.model import Verdict

@@ -11,7 +11,8 @@ from pytestqt.qtbot import QtBot
 
 from app.home.settings.live_output_card import LiveOutputCard
 from app.home.settings.live_output_control import LiveOutputControl
-from app.live_output.output import OutputSettings, live_output
+from app.live_output.output import live_output
+from app.live_output.status import OutputSettings
 from app.system.settings import LIVE_PORT, Settings
 
 

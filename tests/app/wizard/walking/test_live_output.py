@@ -16,7 +16,8 @@ from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 from websockets.sync.client import connect
 
-from app.live_output.output import OutputSettings, live_output
+from app.live_output.output import live_output
+from app.live_output.status import OutputSettings
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
