@@ -27,6 +27,8 @@ from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 from app.help.help_topics import Topic
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
+from app.live_output.output import live_output
+from app.live_output.status import OutputSettings
 from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
 from app.system.qt_messages import log_qt_messages
@@ -150,6 +152,7 @@ class MainWindow(QWidget):
     def closeEvent(self, event: QCloseEvent) -> None:
         if self._wizard is not None:
             self._wizard.close_visit()
+        live_output.stop()
         self._poll.stop()
         self.session.stop()
         event.accept()
@@ -479,6 +482,8 @@ class MainWindow(QWidget):
             theme = replace(theme, colours=DARK if is_dark else LIGHT)
         if theme != current_theme():  # in one step, since each change is written to the settings
             set_theme(theme)
+        kept = self._settings
+        live_output.set_up(OutputSettings(kept.has_live_lsl, kept.has_live_websocket, kept.live_port))
 
     def _on_theme_changed(self) -> None:
         self._settings.scale = current_theme().scale  # also when the keys changed it

@@ -35,6 +35,7 @@ class Topic(StrEnum):
     QUESTIONS = "questions"
     REPEATABILITY = "repeatability"
     FILES = "files"
+    LIVE_OUTPUT = "live-output"
     PRIVACY = "privacy"
     ADMINISTRATION = "administration"
     STATIONS = "stations"
@@ -98,6 +99,7 @@ def topic_title(topic: Topic) -> str:
         Topic.QUESTIONS: tr("Cohort"),
         Topic.REPEATABILITY: tr("Repeatability"),
         Topic.FILES: tr("Files"),
+        Topic.LIVE_OUTPUT: tr("Live output"),
         Topic.PRIVACY: tr("Data and privacy"),
         Topic.ADMINISTRATION: tr("For administrators"),
         Topic.STATIONS: tr("Several workstations"),

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, QSettings, Signal
 from app.wording.translation import languages
 
 FROM, TO = 0.8, 2.0
+LIVE_PORT = 8765  # as good as any: nothing is registered for it that a clinic would run
 
 
 class Scheme(StrEnum):
@@ -97,6 +98,34 @@ class Settings(QObject):
     @has_less_motion.setter
     def has_less_motion(self, has_less_motion: bool) -> None:
         self._put("has_less_motion", "yes" if has_less_motion else "no")
+
+    @property
+    def has_live_lsl(self) -> bool:
+        """Whether the running walk is sent through Lab Streaming Layer."""
+        return self._kept.value("has_live_lsl", "") == "yes"
+
+    @has_live_lsl.setter
+    def has_live_lsl(self, has_live_lsl: bool) -> None:
+        self._put("has_live_lsl", "yes" if has_live_lsl else "no")
+
+    @property
+    def has_live_websocket(self) -> bool:
+        """Whether the running walk is sent over a WebSocket."""
+        return self._kept.value("has_live_websocket", "") == "yes"
+
+    @has_live_websocket.setter
+    def has_live_websocket(self, has_live_websocket: bool) -> None:
+        self._put("has_live_websocket", "yes" if has_live_websocket else "no")
+
+    @property
+    def live_port(self) -> int:
+        """The port of that WebSocket."""
+        kept = str(self._kept.value("live_port", ""))
+        return int(kept) if kept.isascii() and kept.isdigit() and 0 < int(kept[:6]) <= 65535 else LIVE_PORT
+
+    @live_port.setter
+    def live_port(self, port: int) -> None:
+        self._put("live_port", str(port))
 
     @property
     def latest_operator(self) -> str:

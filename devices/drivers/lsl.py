@@ -102,6 +102,12 @@ class _QueriedNetwork:
     address = ""
 
 
+def library_for(address: str) -> ModuleType:
+    """Give the library, once it works in the network of this address alone; raises SourceRefusedError."""
+    ask_in(address)
+    return _imported()
+
+
 def ask_in(address: str) -> None:
     """Ask in the network of this address of ours, or on this computer alone; raises SourceRefusedError."""
     pylsl = _imported()

@@ -48,6 +48,7 @@ ALIKE = {
         "XLSX",
         "OpenSim",
         "FHIR",
+        "WebSocket",
         "SACH",
     ),
     *(

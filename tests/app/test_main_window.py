@@ -1,6 +1,7 @@
 """The window as a whole: the first start, logging in, the cover when nobody is there, folders, sizes."""
 
 import shutil
+import socket
 import subprocess
 import sys
 import time
@@ -19,6 +20,7 @@ from app import main_window
 from app.home import session_screen
 from app.home.login.controller import SHORTEST
 from app.home.settings.settings_page import SettingsPage
+from app.live_output.output import live_output
 from app.main_window import MainWindow
 from app.storage import keys
 from app.storage.data_key import DataKey
@@ -933,3 +935,16 @@ def test_the_environment_leads_to_a_folder_of_its_own_unless_the_own_one_is_a_st
     (tmp_path / "library").mkdir()
     (tmp_path / "library" / STATION).touch()
     assert default_folder() == tmp_path / "library"
+
+
+def test_the_live_output_follows_the_settings_and_ends_with_the_window(open_window: Open, settings: Settings) -> None:
+    window = open_window(None)
+    assert not live_output.is_on
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        settings.live_port = free.getsockname()[1]
+    settings.has_live_websocket = True
+    assert live_output.port == settings.live_port
+    window.close()
+    assert not live_output.is_on
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.1", settings.live_port))

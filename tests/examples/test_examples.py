@@ -64,8 +64,8 @@ def test_an_example_is_a_page_and_imports_public_names_alone(script: Path) -> No
     assert {module for module in ours if module.split(".")[0] in {"app", "core", "devices"}} <= {"core", "devices"}
 
 
-def test_there_are_sixteen_examples() -> None:
-    assert len(SCRIPTS) == 16
+def test_there_are_seventeen_examples() -> None:
+    assert len(SCRIPTS) == 17
 
 
 def test_a_folder_is_analysed(simulated: SimulatedSession, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,6 +15,7 @@ from app.home.login.controller import ADMINISTRATOR, SHORTEST
 from app.home.login.recovery_key_sheet import KeySheet
 from app.home.settings.clinic import ClinicSettings
 from app.home.settings.error_report import ErrorReport
+from app.home.settings.live_output_control import LiveOutputControl
 from app.home.settings.operators_card import OperatorLine
 from app.home.settings.settings_page import DeletedLine, SettingsPage
 from app.storage.audit import about
@@ -61,6 +62,7 @@ class SettingsController(QObject):
         self._error_report = ErrorReport(self.page)
         self._error_report.reported.connect(self.reported)
         self._error_report.written.connect(self.page.show_error_report)
+        self._live_output = LiveOutputControl(settings, self.page.live_output)
         self._show_screen()
         self.page.drivers.show_packages(driver_packages())
         self._connect()
@@ -102,6 +104,7 @@ class SettingsController(QObject):
     def read(self) -> None:
         """Show what may have changed since the settings were looked at last."""
         self.read_deleted()
+        self._live_output.show()
         self._clinic.read_waiting()
         self.page.drivers.show_packages(driver_packages())
 

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.settings.clinic_cards import MoreStationsCard, StationCard
 from app.home.settings.drivers_card import DriversCard
+from app.home.settings.live_output_card import LiveOutputCard
 from app.home.settings.operators_card import OperatorsCard
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
@@ -63,6 +64,8 @@ class SettingsPage(TallPage):
         self._title = Text(tr("Settings"), size=26, weight=SEMIBOLD)
         lay_out(self.column, self._title, margins=(24, 16, 24, 20), spacing=16)
         self._build_screen()
+        self.live_output = LiveOutputCard()
+        self.column.addWidget(self.live_output)
         self._build_access()
         self._build_backup()
         self.station = StationCard()
@@ -90,6 +93,7 @@ class SettingsPage(TallPage):
             *self.motion.segments,
             self.sound,
             self.prompts,
+            *self.live_output.tab_order,
             *(field.line_edit for field in (self.old, self.new, self.again)),
             self.change,
             self.renew,

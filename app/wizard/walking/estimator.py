@@ -12,6 +12,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from app.live_output.chunks import LiveChunk
+from app.wizard.walking.live_chunk import chunk_of, verdict_by
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from core.body import LEG_JOINTS, Joint, Segment, Site, knee_of
 from core.gait.live import PHASE_AFTER, FootEvent, LiveEvent, PhaseChange
@@ -26,6 +28,7 @@ from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
 from core.targets import TargetMeasure
 from core.timed.live import LiveTest
+from core.verdicts.model import Verdict
 
 KEPT_S = 15.0
 SILENT_S = 0.5
@@ -53,6 +56,10 @@ class WalkingEstimator:
         The joints with a calibration whose two sensors are worn and send samples.
     on_value
         Called by the estimator's thread whenever `state` has a new value of a stride, so that nobody has to look.
+    on_chunk
+        Called by the estimator's thread with what is new, for other programs; None while nothing is sent.
+    rates_hz
+        Of the samples of each joint in `calibrated`.
     test
         The timed test that is going on; it is given all samples.
     """
@@ -71,6 +78,9 @@ class WalkingEstimator:
             joint for joint in LEG_JOINTS if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)
         )
         self._steps_s = {site: sensor.step_s for site, sensor in sensors.items()}
+        self.rates_hz = {joint: 1.0 / self._steps_s[joint.proximal] for joint in LEG_JOINTS if joint in self.calibrated}
+        self._calibration = {joint: calibration[joint] for joint in self.calibrated}
+        self._verdicts: dict[Joint, Verdict] = {}  # by that, once somebody asks
         self._curves = {
             joint: _Curve(self._steps_s[joint.proximal]) for joint in LEG_JOINTS if joint in self.calibrated
         }
@@ -83,6 +93,7 @@ class WalkingEstimator:
         self._reported: deque[StrideValue] = deque(maxlen=KEPT_VALUES)
         self._values_reported = 0
         self.on_value: Callable[[], None] | None = None
+        self.on_chunk: Callable[[LiveChunk], None] | None = None
         self.test: LiveTest | None = None  # set by the screen
         self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
         self._hips: deque[Mapping[Joint, HipIdentification]] = deque()  # the same
@@ -106,6 +117,8 @@ class WalkingEstimator:
             joint, calibration = self._wishes.popleft()
             if joint in self._curves:
                 self._walking.recalibrate(joint, calibration)
+                self._calibration[joint] = calibration
+                self._verdicts.pop(joint, None)
         while self._hips:
             self._walking.find_hips(self._hips.popleft())
         worn = {self._site_of[name]: block for name, block in blocks.items() if name in self._site_of and len(block)}
@@ -160,6 +173,10 @@ class WalkingEstimator:
         )
         if values and (on_value := self.on_value) is not None:
             on_value()
+        if (on_chunk := self.on_chunk) is not None:
+            for joint in self._calibration.keys() - self._verdicts.keys():
+                self._verdicts[joint] = verdict_by(self._calibration[joint])
+            on_chunk(chunk_of(reported, joints, self._verdicts, implausible, missing))
 
     def _hear(self, worn: Mapping[Site, ImuBlock]) -> None:
         for site, block in worn.items():

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from app.live_output.chunks import LiveStreams
+from app.live_output.output import live_output
 from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.walk_rows import ongoing_walk
-from core.body import LEG_JOINTS, Side
+from core.body import LEG_JOINTS, Segment, Side
 from core.live.walking import STRIDES_FOR_ANKLE
 from core.session import Recording
 
@@ -50,6 +52,7 @@ class LivePreview(QObject):
         """Nobody looks any more."""
         self._estimator = None
         self.renewed.emit(None)
+        live_output.close_streams()
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_estimator(None)
 
@@ -60,6 +63,12 @@ class LivePreview(QObject):
         self._is_ankle_asked = self._are_hips_asked = False
         if self._estimator is not None:
             self._estimator.count_from(began_s)
+        if (acquisition := self._visit.sensors.acquisition) is not None and not self._visit.sensors.are_in_memory:
+            live_output.begin_walk(began_s, acquisition.now_s)
+
+    def end_walk(self) -> None:
+        """Send nothing more of this walk."""
+        live_output.end_walk()
 
     def look(self) -> "WalkingReadout | None":
         """What the estimator gives now, with time going on also while nothing is received; None where none works."""
@@ -107,6 +116,10 @@ class LivePreview(QObject):
         elif walk is not None:
             estimator.count_from(walk.began_s)
         self._estimator = estimator
+        estimator.on_chunk = live_output.take if live_output.is_on else None  # settings need another page
+        sides = {site.leg_side for site in self._visit.sensors.site_of.values() if site.segment is Segment.FOOT}
+        feet = tuple(side for side in Side if side in sides)
+        live_output.open_streams(LiveStreams(estimator.rates_hz, feet, self._visit.is_simulated))
         self.renewed.emit(estimator)
         acquisition.set_estimator(estimator)
 

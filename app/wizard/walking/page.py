@@ -25,6 +25,7 @@ from app.widgets.notice import Notice
 from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.sensors_progress import ProgressShown, SensorsProgress
+from app.widgets.text import MEDIUM, Text
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_view import BenchState, BenchView
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
@@ -77,6 +78,7 @@ class WalkingPage(QWidget):
         self._has_message = False
         self._message: tuple[str, str] | None = None
         self.tabs = Segmented(tr("View"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
+        self.output = Text(size=14, weight=MEDIUM, tone="ink2", wraps=True)
         self.patient_controls = ControlsCard()  # in sight while the patient's screen is
         self.stopped = StoppedCard()
         self.received = ReceivedCard()
@@ -222,6 +224,12 @@ class WalkingPage(QWidget):
             )
         self._arrange()
 
+    def show_output(self, sentence: str) -> None:
+        """Say what other programs receive; empty: nothing."""
+        if sentence != self.output.text():
+            self.output.setText(sentence)
+            self.output.setVisible(bool(sentence))
+
     def set_simulated(self, is_simulated: bool) -> None:
         self.charts.set_simulated(is_simulated)
 
@@ -263,7 +271,8 @@ class WalkingPage(QWidget):
         self._right = lay_out(QVBoxLayout(), self.figures, (self.walks, 1))
         self._middle = lay_out(QBoxLayout(ACROSS), (self._left, 1), self._right)
         self.patient_controls.setVisible(False)
-        above = (self.notice, self.patient_controls, self.tabs, self.stopped, self.received)
+        self.output.hide()
+        above = (self.output, self.notice, self.patient_controls, self.tabs, self.stopped, self.received)
         large = ((part, 1) for part in (self.bench, self.timed, self._middle))
         self._column = lay_out(QVBoxLayout(self._inside), *above, *large, self.next)
         lay_out(QHBoxLayout(self), self._scroll, margins=0)

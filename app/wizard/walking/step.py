@@ -7,6 +7,8 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Slot
 
+from app.live_output.output import live_output
+from app.live_output.words import output_words
 from app.system import sounds
 from app.system.sounds import Sound
 from app.widgets.action_bar import BarState
@@ -308,6 +310,7 @@ class WalkingStep(Step):
 
     def stop(self) -> None:
         view = self._at_stop = self._preview.shown
+        self._preview.end_walk()
         if self.feedback is not None and (walk := self._ongoing) is not None:
             self._tallies[walk.details.name] = self.feedback.end_walk()
         self._visit.recordings.stop(None if view is None else view.strides)
@@ -358,6 +361,7 @@ class WalkingStep(Step):
             sounds.play(Sound.LOSS)
             for site in news:
                 recordings.mark(f"{site} silent")
+        self.page.show_output(output_words(live_output))
         message = self._notice.message(self._preview.shown)
         if message == NOTHING and recordings.is_recording and sensors.acquisition is not None:
             self.page.show_message(*no_foot_message(sensors.sensor_at), is_caution=False)
@@ -420,6 +424,7 @@ class WalkingStep(Step):
     @Slot(object)
     def _on_ended(self, recording: "SessionRecording") -> None:
         if recording.details.kind is RecordingKind.WALKING:
+            self._preview.end_walk()  # also of one that ended by itself
             self._label = label_after(self._visit.patient.details, self._used)
             self._keep_tallies(recording)
             self._show()

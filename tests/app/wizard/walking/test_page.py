@@ -388,3 +388,13 @@ def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot
     qtbot.waitUntil(page.charts.hasFocus)
     page.show_walks(())
     assert page.empty.hasFocus()
+
+
+def test_what_other_programs_receive_is_stated_while_it_is_on(page: WalkingPage) -> None:
+    page.show_walks((RECORDING,))
+    assert not page.output.isVisible()
+    page.show_output("Live output is on: LSL.")
+    assert page.output.isVisible()
+    assert page.output.text() == "Live output is on: LSL."
+    page.show_output("")
+    assert not page.output.isVisible()
