@@ -26,7 +26,8 @@ OF_NETWORK = (
     "PIP_DEFAULT_TIMEOUT",
     "SSL_CERT_FILE",
 )
-NEEDED = ("debootstrap", "chroot", "mount")
+NEEDED = ("debootstrap", "chroot", "mount", "unshare")
+OWN_MOUNTS = "GAITWRIGHT_OWN_MOUNTS"
 USER, USER_ID = "clinician", 1000
 MOUNTED = ("/proc", "/sys", "/dev", "/tmp")
 CERTIFICATES = Path("/usr/local/share/of-this-network.crt")  # where no package of Debian's writes
@@ -93,9 +94,26 @@ def why_not() -> str:
     return f"{', '.join(missing)} is not there" if missing else ""
 
 
+def enter_own_mounts(module: str) -> None:
+    """Begin `module` again where mounts are its own: however it ends, this machine's /dev is left in no folder.
+
+    Whoever removed such a folder would remove the devices and temporary files of the machine.
+    """
+    if os.environ.get(OWN_MOUNTS):
+        return
+    os.environ[OWN_MOUNTS] = "1"
+    again = ["unshare", "--mount", "--propagation", "slave", sys.executable, "-m", module, *sys.argv[1:]]
+    os.execvp(again[0], again)
+
+
 @contextmanager
 def bare_root(folder: Path) -> Iterator[BareRoot]:
-    """Make a root in `folder`, which is gone afterwards; what is made from is kept beside it for the next time."""
+    """Make a root in `folder`, which is gone afterwards; what is made from is kept beside it for the next time.
+
+    Raises RuntimeError outside mounts of its own (`enter_own_mounts`).
+    """
+    if not os.environ.get(OWN_MOUNTS):
+        raise RuntimeError("a bare root is made where mounts are its own only")
     base = folder.with_name(f"{RELEASE}.tar")
     if not base.exists():
         say("Making a bare Debian.")

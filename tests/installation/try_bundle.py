@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "packaging"))  # it
 
 from setup_environment import ROOT, say
 
-from tests.installation.bare_root import USER_ID, BareRoot, bare_root, why_not
+from tests.installation.bare_root import USER_ID, BareRoot, bare_root, enter_own_mounts, why_not
 from tests.safety.no_network import ALONE, calls_in
 from tests.tours import tour
 from tests.tours.tour_stops import MOUSE, REVIEWED, Stop
@@ -233,6 +233,7 @@ def main() -> None:
         return
     if reason := why_not():
         sys.exit(f"This cannot be tried here: {reason}.")
+    enter_own_mounts(__spec__.name)
     if not list(DIST.glob("gaitwright_*.deb")) or not (DIST / "gaitwright-tour").exists():
         sys.exit("Run first: python3 packaging/build.py --with-tour")
     for name in required.only:

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "packaging"))  # it
 
 from setup_environment import ROOT, say
 
-from tests.installation.bare_root import BareRoot, bare_root, why_not
+from tests.installation.bare_root import BareRoot, bare_root, enter_own_mounts, why_not
 
 PLACE = ROOT / "build" / "try" / "readme"
 FIRST_REPORT_S = 300.0
@@ -68,6 +68,7 @@ def main() -> None:
     required = parser.parse_args()
     if reason := why_not():
         sys.exit(f"This cannot be tried here: {reason}.")
+    enter_own_mounts(__spec__.name)
     with bare_root(PLACE) as root:
         root.apt("update")
         root.apt("install", "--no-install-recommends", "python3")
