@@ -4,9 +4,19 @@ from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
 from pathlib import Path
 
+from core.results import Analysis
+from core.session import Session
+
 
 def has_rerun() -> bool:
     """Whether a session's log can be written; a frozen program has the Python of Rerun in itself, and not the rest."""
     found = find_spec("rerun_bindings")
     folders = map(Path, (found and found.submodule_search_locations) or ())
     return any(one.name.endswith(tuple(EXTENSION_SUFFIXES)) for folder in folders for one in folder.glob("rerun*"))
+
+
+def write_log(session: Session, analysis: Analysis, path: Path) -> None:
+    """Write what Rerun shows of a session; raises ImportError where it is not installed, OSError for a full disk."""
+    from app.review.rerun_log import write_log as written  # Rerun takes longer to load than to write
+
+    written(session, analysis, path)

@@ -5,7 +5,7 @@ from datetime import datetime
 from pathlib import Path
 
 from app.exports.result_folder import LOG, write_results
-from app.review.installed import has_rerun
+from app.review.installed import has_rerun, write_log
 from app.system.logs import version_of
 from app.system.progress import Report
 from core.analysis import analyse
@@ -29,8 +29,6 @@ def write_analysed(session: Session, folder: Path, choices: AnalysisChoices, rep
     report(1.0, "writing")
     write_results(session, analysis, folder)
     if choices.has_log and has_rerun():
-        from app.review.rerun_log import write_log  # here, not above: its library takes long to import
-
         write_log(session, analysis, folder / LOG)
     if choices.has_report:
         from app.reports.patient.report_file import write_report  # Typst, and the pages

@@ -12,7 +12,7 @@ from app.exports.spreadsheet import workbook
 from app.reports.patient.document import ReportPreview, make_report
 from app.reports.patient.letter import letter_pages, make_letter
 from app.reports.patient.report_file import check_report_place, replace_report, write_visits
-from app.review.installed import has_rerun
+from app.review.installed import has_rerun, write_log
 from app.storage.audit import LETTER_FORMAT, REPORT_FORMAT, about
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Typed
@@ -59,8 +59,6 @@ class Documents:
                 if "csv" in chosen or "rrd" in chosen:
                     write_results(export.session, export.analysis, beside)
                 if "rrd" in chosen and has_rerun():
-                    from app.review.rerun_log import write_log  # Rerun takes longer to load than to write
-
                     write_log(export.session, export.analysis, beside / LOG)
                 if request is not None:
                     (beside / file_name(stored)).write_bytes(make_report(request))
