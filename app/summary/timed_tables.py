@@ -84,7 +84,7 @@ def sections_of(test: TimedTest) -> Sections | None:
         return Sections((tr("Duration, s"),), rows, has_strip=True)
     if test.definition.rises > 1 and test.rises:
         return _rises(test)
-    if test.stairs:
+    if test.stairs and test.definition.duration_s is None:  # a set time has its thirds, with stairs or without
         return _stairs(test)
     if test.definition.duration_s is None or not test.thirds:
         return None

@@ -62,6 +62,7 @@ KINDS = {
     "foot flat": ("foot_flat_percent",),
     "foot pitch": ("foot_pitch_at_contact_deg",),
     "heel rise": ("foot_heel_rise_deg",),
+    "set angle": ("shank_to_foot_in_swing_deg",),  # between walks with the sensors left on alone
     "segment height": tuple(
         f"{segment}_at_{when}_deg"
         for segment in ("shank", "thigh")
@@ -86,6 +87,7 @@ STRAPPED_AGAIN: Mapping[str, Spread] = {
     "knee timing": (1.1, 0.0, 1.5, 0.0),
 }
 LEFT_ON: Mapping[str, Spread] = {
+    "set angle": _always(0.25),  # of 40 simulated fittings
     "stance": _always(0.55),
     "time": _always(0.0, 2.2),
     "speed": _always(0.045),
