@@ -1,7 +1,7 @@
 """A WebSocket on the loopback addresses alone, for as many clients as are bounded here.
 
-A web page of another origin is refused, so that no site that somebody looks at can read along. `null` and `file://` are
-what browsers state for a page that was opened from the disk, which has no server to come from.
+A web page of another origin is refused, so that no site that somebody looks at can read along. `null` is another one:
+browsers state it for a page that was opened from the disk, and for any frame that a site shuts off.
 """
 
 import asyncio
@@ -17,13 +17,10 @@ from typing import Any
 import websockets.asyncio.server as library  # an extra: this module is imported once it is required
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
-from websockets.typing import Origin
 
 ADDRESSES = ("127.0.0.1", "::1")
 ORIGINS = (
     None,  # no web page
-    Origin("null"),
-    Origin("file://"),
     re.compile(r"https?://(localhost|127\.0\.0\.1|\[::1\])(:\d{1,5})?"),
 )
 MOST_CLIENTS = 8

@@ -64,7 +64,6 @@ class SettingsController(QObject):
         self._error_report.written.connect(self.page.show_error_report)
         self._live_output = LiveOutputControl(settings, self.page.live_output)
         self._show_screen()
-        self.page.drivers.show_packages(driver_packages())
         self._connect()
 
     def show_library(self, state: OpenedState) -> None:

@@ -1,11 +1,14 @@
-"""The example page in Chromium, opened from the disk: every sample once. Skips without `chromium` (apt-get install)."""
+"""The example page in Chromium, served on this computer: every sample once. Skips without `chromium`."""
 
 import json
 import re
 import shutil
 import subprocess
+import threading
 import urllib.request
 from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -68,9 +71,14 @@ def on(output: LiveOutput) -> LiveOutput:
 
 @pytest.fixture
 def browser(on: LiveOutput, tmp_path: Path) -> Iterator[Browser]:
-    browser = Browser(tmp_path / "profile", f"{PAGE.as_uri()}?port={on.port}")
-    yield browser
-    browser.close()
+    handler = partial(SimpleHTTPRequestHandler, directory=str(PAGE.parent))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        page = f"http://127.0.0.1:{server.server_port}/{PAGE.name}?port={on.port}"
+        browser = Browser(tmp_path / "profile", page)
+        yield browser
+        browser.close()
+        server.shutdown()
 
 
 def test_the_page_receives_every_sample_and_marks_them_simulated(on: LiveOutput, browser: Browser) -> None:
