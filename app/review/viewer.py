@@ -19,6 +19,7 @@ from pathlib import Path
 
 import platformdirs
 
+from app.review.installed import write_log
 from app.storage.files import held
 from app.wording.translation import tr
 from core.results import Analysis
@@ -91,8 +92,6 @@ class Viewer:
         program, why = self._program, why_not(self._program)
         if program is None or why:
             raise ViewerRefusedError(why)
-        from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than the window
-
         try:
             folder = self._folder or self._begin(program)
             self._forget_closed()

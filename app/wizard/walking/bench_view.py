@@ -65,6 +65,7 @@ class BenchView(QWidget):
     def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()
         self._is_compact, self._room = False, 0
+        self._places: Sequence[tuple[int, ...]] = ()
         self._mark = IconMark(Icon.DIFFERENCE, size=24)
         self.first = Text(size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(tone="ink2", wraps=True)
@@ -199,8 +200,10 @@ class BenchView(QWidget):
         )
         self._cards.setColumnStretch(0, int(is_one))
         self._cards.setColumnStretch(1, int(not is_one))
-        for widget, place in zip((self.tabs, *(card for _, card, _ in cards)), places, strict=True):
-            self._cards.addWidget(widget, *place)
+        if places is not self._places:
+            self._places = places
+            for widget, place in zip((self.tabs, *(card for _, card, _ in cards)), places, strict=True):
+                self._cards.addWidget(widget, *place)
         for key, card, width in cards:
             card.setVisible(choice == key or not is_tabbed or (not is_one and key == ALIGNMENTS))
             card.setMinimumWidth(width)

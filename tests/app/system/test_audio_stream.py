@@ -108,7 +108,9 @@ def test_windows_that_waits_for_room_is_silenced() -> None:
         wave.write(bytes(2 * BLOCK))
     threading.Timer(0.02, wave.fall_silent).start()
     wave.write(bytes(2 * BLOCK))  # comes back though there is no room
+    assert winmm.most_queued == BLOCKS
     wave.close()
+    assert not winmm.is_open
 
 
 @pytest.fixture
