@@ -152,7 +152,9 @@ def control_of_rerun(version: str, architecture: str, root: Path) -> str:
         depends=f"gaitwright (= {version})",
         recommends=", ".join(OF_VIEWER),
     )
-    return head + DESCRIPTION_OF_RERUN
+    # before there were two, its files were the other's
+    taken = f"Breaks: gaitwright (<< {version})\nReplaces: gaitwright (<< {version})\n"
+    return head + taken + DESCRIPTION_OF_RERUN
 
 
 def _kilobytes(root: Path) -> int:

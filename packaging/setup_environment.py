@@ -88,7 +88,8 @@ def copied_to_user() -> Path | None:
             if not _is_same(source, place / name):
                 (place / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(source, place / name)
-                shutil.copystat(source, place / name)
+                there = source.stat()  # its times alone: a copy may be written again
+                os.utime(place / name, ns=(there.st_atime_ns, there.st_mtime_ns))
         for folder in RUNS:
             for old in [one for one in (place / folder).rglob("*") if one.is_file() and one not in kept]:
                 old.unlink()

@@ -1,9 +1,10 @@
 """What `pip wheel .` and `pip install .` call (PEP 517): two wheels with one top-level name, `gaitwright`.
 
 In the repository the packages are `app`, `core`, `devices` and `resources`, names that anybody may have. A wheel is
-built from a copy in which they lie inside `gaitwright` and their imports say so; the repository, editable installations
-and the source archive stay as they are. `gaitwright-core` holds `core` and what reads and writes files, with what they
-import; `gaitwright` holds everything else and depends on it, so that no file is in both:
+built from a copy in which they lie inside `gaitwright` and their imports say so; the repository and editable
+installations stay as they are. The source archive holds them as they are, and this file to build them with.
+`gaitwright-core` holds `core` and what reads and writes files, with what they import; `gaitwright` holds everything
+else and depends on it, so that no file is in both:
 
     pip wheel . --no-deps -w dist
     pip wheel . --no-deps -w dist --config-settings distribution=core
@@ -24,6 +25,7 @@ from setuptools import build_meta  # type: ignore[import-untyped]  # its stubs a
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("app", "core", "devices", "resources")
+OF_SOURCES = ("LICENSE", "README.md", "pyproject.toml", "packaging/wheel_backend.py")
 NAME, CORE_NAME = "gaitwright", "gaitwright-core"
 CORE_NEEDS = ("numpy", "scipy", "vqf")
 CORE_FILES = ("pyarrow", "tomli-w", "duckdb")  # for session folders; an extra, as it doubles what is installed
@@ -33,7 +35,6 @@ with the application."""
 MODULE = re.compile(r"(app|core|devices|resources)(\.[a-z_][a-z0-9_]*)*")
 
 build_editable = build_meta.build_editable
-build_sdist = build_meta.build_sdist
 get_requires_for_build_editable = build_meta.get_requires_for_build_editable
 get_requires_for_build_sdist = build_meta.get_requires_for_build_sdist
 get_requires_for_build_wheel = build_meta.get_requires_for_build_wheel
@@ -50,6 +51,20 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
         stage(Path(folder), is_core=is_core)
         with chdir(folder):
             return build_meta.build_wheel(str(place), None, None)
+
+
+def build_sdist(sdist_directory: str, _config_settings: Settings = None) -> str:
+    """Build the source archive, from a copy too: a list of files of its own would be one more file to keep."""
+    place = Path(sdist_directory).resolve()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path in [*_files(), *map(Path, OF_SOURCES)]:
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(ROOT / path, folder / path)
+        listed = [*(f"graft {package}" for package in PACKAGES), *(f"include {one}" for one in OF_SOURCES)]
+        (folder / "MANIFEST.in").write_text("\n".join(listed), encoding="utf-8")
+        with chdir(folder):
+            return build_meta.build_sdist(str(place), None)
 
 
 def stage(folder: Path, *, is_core: bool) -> None:

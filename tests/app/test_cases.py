@@ -176,8 +176,12 @@ def acc_and_gyro_apart(case: Case) -> None:
 
 
 def is_read_as_reference(case: Case, name: str) -> None:
-    """The session is missing, but the reference is read first."""
-    assert name not in case.run("agree", "none", "--reference", name, "--out", case.out).text
+    """It is read, and so it is the missing session that is refused."""
+    outcome = case.run("agree", "none", "--reference", name, "--out", case.out)
+    assert outcome.code == 2
+    assert "none" in outcome.text
+    assert name not in outcome.text
+    assert read_reference(Path(name)).trials
 
 
 def csv_na_cells(case: Case) -> None:

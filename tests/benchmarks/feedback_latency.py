@@ -22,7 +22,6 @@ drawn, is measured and added. It is what a processor that is free would show, an
 import math
 import sys
 import tempfile
-import threading
 import time
 import uuid
 from dataclasses import replace
@@ -58,6 +57,7 @@ from core.session import RecordingKind
 from core.targets import Target, TargetMeasure
 from devices.simulation.replay import POLL_S, ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.benchmarks.beat import Beat
 from tests.benchmarks.live_road import stood
 from tests.driver import options
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
@@ -65,30 +65,10 @@ from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 RATE_HZ = 200.0
 STRIDE_S = 1.1
 TICK_MS = 33
-BEAT_S = 0.01
 ALWAYS_REACHED = -99
 GOAL_S = 0.15  # from the end of a stride to its bar, 95 %
 
 Noted = list[tuple[StrideValue, float]]
-
-
-class _Beat(threading.Thread):
-    """Sleeps for BEAT_S again and again: how late it wakes is what the machine adds by itself, busy as it is."""
-
-    def __init__(self) -> None:
-        super().__init__(daemon=True)
-        self.late_s: list[float] = []
-        self._is_over = threading.Event()
-
-    def run(self) -> None:
-        while not self._is_over.is_set():
-            begin_s = time.perf_counter()
-            time.sleep(BEAT_S)
-            self.late_s.append(time.perf_counter() - begin_s - BEAT_S)
-
-    def end(self) -> None:
-        self._is_over.set()
-        self.join()
 
 
 class _Watch(QObject):
@@ -184,7 +164,7 @@ def run(seconds: float) -> None:
         print("All in ms: 50 %, 95 %, worst.\n")
         print("| measure | strides | from the event: known | bar | tone | from its end: bar | tone |")
         print("|---|---|---|---|---|---|---|")
-        beat = _Beat()
+        beat = Beat()
         beat.start()
         with tempfile.TemporaryDirectory() as folder:
             acquisition.record(JournalWriter.create(Path(folder), uuid.uuid4(), KEY, room=NO_ROOM_ASKED))

@@ -15,7 +15,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import uuid
 from bisect import bisect_left
@@ -41,6 +40,7 @@ from core.session import RecordingKind
 from devices.live import Keep
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.benchmarks.beat import Beat
 from tests.benchmarks.live_road import stood
 from tests.driver import options
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
@@ -48,7 +48,6 @@ from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 RATE_HZ = 200.0
 STRIDE_S = 1.1
 GOAL_S = 0.06
-BEAT_S = 0.01
 READY_S = 60.0
 
 WEB_SOCKET = """
@@ -117,25 +116,6 @@ class TimedSource(ReplaySource):
             if len(block):
                 self.arrived[block.sensor].append((float(block.time_s[-1]), now_s))
         return blocks
-
-
-class Beat(threading.Thread):
-    """Sleeps for BEAT_S again and again: how late it wakes is what the machine adds by itself, busy as it is."""
-
-    def __init__(self) -> None:
-        super().__init__(daemon=True)
-        self.late_s: list[float] = []
-        self._is_over = threading.Event()
-
-    def run(self) -> None:
-        while not self._is_over.is_set():
-            begin_s = time.perf_counter()
-            time.sleep(BEAT_S)
-            self.late_s.append(time.perf_counter() - begin_s - BEAT_S)
-
-    def end(self) -> None:
-        self._is_over.set()
-        self.join()
 
 
 def program(text: str, *arguments: str) -> "subprocess.Popen[str]":

@@ -214,9 +214,12 @@ def test_from_a_folder_that_may_not_be_written_a_copy_of_the_users_runs(
     (set_up.ROOT / "app").mkdir()
     for name in ("app/old.py", "app/new.py"):
         (set_up.ROOT / name).write_text("1")
+        (set_up.ROOT / name).chmod(0o444)
     copy = set_up.copied_to_user()
+    assert (copy / "app" / "new.py").stat().st_mode & 0o200
     (copy / ".venv").mkdir()
     (set_up.ROOT / "app" / "old.py").unlink()
+    (set_up.ROOT / "app" / "new.py").chmod(0o644)
     (set_up.ROOT / "app" / "new.py").write_text("22")
     assert set_up.copied_to_user() == copy
     assert copy.is_relative_to(home)

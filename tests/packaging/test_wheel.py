@@ -88,6 +88,18 @@ def wheels(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {path.name.split("-")[0]: path for path in made.glob("*.whl")}
 
 
+@pytest.mark.endurance
+def test_the_wheel_of_the_source_archive_is_that_of_the_repository(
+    backend: ModuleType, wheels: dict[str, Path], tmp_path: Path
+) -> None:
+    archive = tmp_path / backend.build_sdist(str(tmp_path))
+    command = [sys.executable, "-m", "pip", "wheel", archive, "--no-deps", "--no-build-isolation", "-q", "-w", tmp_path]
+    subprocess.run(command, check=True)
+    (made,) = tmp_path.glob("gaitwright-*.whl")
+    with zipfile.ZipFile(made) as one, zipfile.ZipFile(wheels["gaitwright"]) as other:
+        assert {a.filename: a.CRC for a in one.infolist()} == {b.filename: b.CRC for b in other.infolist()}
+
+
 @pytest.fixture(scope="module")
 def environment(wheels: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An environment with both wheels, strangers' packages of our names, and the libraries of this one; its Python."""
@@ -99,7 +111,8 @@ def environment(wheels: dict[str, Path], tmp_path_factory: pytest.TempPathFactor
         (site / stranger).mkdir()
         (site / stranger / "__init__.py").write_text("MINE = 1\n", encoding="utf-8")
     python = next(path for path in place.glob("*/python*") if path.is_file())
-    pip(python, "install", "--no-deps", "--no-index", *map(str, wheels.values()))
+    # that of this environment is seen there too, and would be taken for it
+    pip(python, "install", "--no-deps", "--no-index", "--ignore-installed", *map(str, wheels.values()))
     return python
 
 

@@ -8,14 +8,13 @@ As `file_fuzz` does it for recordings, by the same process.
 """
 
 import tempfile
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import ezc3d
 import numpy as np
 
 from devices.files.limited_reader import LimitedReader, LimitedReading
-from tests.driver import Found, drive
+from tests.driver import drive
 from tests.safety.file_fuzz import Spoilable, fuzz_each, nobody
 
 FRAMES = 30
@@ -58,10 +57,5 @@ def reference_readers() -> dict[str, Spoilable]:
     return {name: Spoilable(content, "reference", read_it, may_be_a_link=False) for name, content in made.items()}
 
 
-def reference_faults(files: int, seed: int, only: Sequence[str] | None = None) -> Iterator[tuple[str, Found]]:
-    """As `fuzz_each`, of references."""
-    yield from fuzz_each(reference_readers(), files, seed, only)
-
-
 if __name__ == "__main__":
-    drive(__doc__, lambda asked, _: reference_faults(asked.files, asked.seed), files=500, seed=1)
+    drive(__doc__, lambda asked, _: fuzz_each(reference_readers(), asked.files, asked.seed), files=500, seed=1)

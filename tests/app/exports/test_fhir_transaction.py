@@ -256,26 +256,27 @@ def _is_test(one: dict[str, Any]) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("test", "status", "absent"),
+    ("test", "status", "absent", "phrase"),
     [
-        (replace(TWO, missing=(NotMeasured.SILENT,)), "preliminary", ""),
+        (replace(TWO, missing=(NotMeasured.SILENT,)), "preliminary", "", "a foot sensor"),
         (
             replace(TWO, end_s=math.nan, distance_m=math.nan, missing=(NotMeasured.NOT_FINISHED,)),
             "preliminary",
             "error",
+            "ended before",
         ),
-        (replace(TWO, distance_m=math.nan, missing=(NotMeasured.NO_FEET,)), "cancelled", "not-performed"),
+        (replace(TWO, distance_m=math.nan, missing=(NotMeasured.NO_FEET,)), "cancelled", "not-performed", "no foot"),
     ],
 )
 def test_what_a_test_did_not_measure_has_its_reason(
-    coded: tuple[Session, Analysis], test: TimedTest, status: str, absent: str
+    coded: tuple[Session, Analysis], test: TimedTest, status: str, absent: str, phrase: str
 ) -> None:
     (one,) = (one for one in resources(bundle(*with_tests(coded, test)), "Observation") if _is_test(one))
     assert one["status"] == status
     assert ("valueQuantity" in one) is not bool(absent)
     assert [part["code"] for part in one.get("dataAbsentReason", {}).get("coding", ())] == ([absent] if absent else [])
     notes = [note["text"] for note in one["note"]]
-    assert any("a foot sensor" in text.lower() or "ended before" in text or "no foot" in text.lower() for text in notes)
+    assert any(phrase in text.lower() for text in notes)
 
 
 def test_a_distance_whose_feet_are_in_doubt_is_preliminary_and_a_time_is_not(coded: tuple[Session, Analysis]) -> None:

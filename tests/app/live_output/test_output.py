@@ -17,7 +17,9 @@ def threads() -> list[str]:
     return [one.name for one in threading.enumerate() if one.name == "live output"]
 
 
-def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """Every socket that is made."""
     opened: list[object] = []
     make = socket.socket.__init__
 
@@ -26,6 +28,10 @@ def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch:
         make(self, *args, **kwargs)  # type: ignore[arg-type]  # whatever it is given
 
     monkeypatch.setattr(socket.socket, "__init__", watched)
+    return opened
+
+
+def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, opened: list[object]) -> None:
     assert not output.is_on
     output.set_up(OutputSettings())
     output.open_streams(STREAMS)
@@ -39,8 +45,9 @@ def test_it_is_off_at_first_and_opens_no_socket(output: LiveOutput, monkeypatch:
     assert output_words(output) == ""
 
 
-def test_the_watch_on_sockets_sees_those_that_are_opened(output: LiveOutput, monkeypatch: pytest.MonkeyPatch) -> None:
-    output.set_up(OutputSettings(has_websocket=True))
+def test_the_watch_on_sockets_sees_those_that_are_opened(output: LiveOutput, opened: list[object]) -> None:
+    output.set_up(OutputSettings(has_websocket=True, port=0))
+    assert opened
     assert threads() == ["live output"]
     assert output_words(output) == "Live output is on: WebSocket (0 connected)."
     output.stop()

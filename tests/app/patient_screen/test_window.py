@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QEvent, QObject, QRect, Qt
 from PySide6.QtGui import QColor, QFont, QGuiApplication, QImage, QScreen
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.patient_screen.patient_view import PatientView, figure, title_of
@@ -259,7 +259,9 @@ def test_another_theme_is_shown_at_once(qtbot: QtBot, window: PatientWindow) -> 
 
     watch = Watch()
     window.installEventFilter(watch)
-    qtbot.waitExposed(window)
+    qtbot.waitUntil(lambda: painted != [])
+    QApplication.processEvents()
+    painted.clear()
     set_dark(True)
     qtbot.waitUntil(lambda: QColor(current_theme().colours.surface) in painted)
     assert QColor(picture(window).pixel(2, 2)) == QColor(current_theme().colours.surface)

@@ -96,9 +96,10 @@ LONG = {
 }
 
 
+@pytest.mark.endurance  # measures time, if that of the processor
 @pytest.mark.parametrize("cell", LONG.values(), ids=LONG)
 def test_a_long_cell_is_looked_at_once(cell: str, tmp_path: Path) -> None:
-    """By the work that it takes: ten times the cell takes about ten times as long, not a hundred."""
+    """By the work that it takes: twenty times the cell takes about twenty times as long, not four hundred."""
 
     def took_s(length: int) -> float:
         body = rows_of(LEFT.time_s[:50], LEFT.acc[:50], LEFT.gyr[:50])

@@ -193,11 +193,11 @@ def test_no_choice_of_a_prosthesis_is_cut(qtbot: QtBot, language: str, scale: fl
         syme = Prosthesis(AmputationLevel.ANKLE_DISARTICULATION, foot=FootKind.MICROPROCESSOR_ANKLE)
         worn = {Side.LEFT: longest, Side.RIGHT: syme}
         page.show_draft(PatientDraft(replace(KNOWN, prosthetic_side="both", prostheses=worn)))
-        page.show()
-        qtbot.wait(50)
+        with qtbot.waitExposed(page):
+            page.show()
         choices = [one for row in page.prostheses.values() for one in row.choices if one.isVisible()]
         assert len(choices) == 5
-        assert [one.currentText() for one in choices if one.is_cut] == []
+        qtbot.waitUntil(lambda: [one.currentText() for one in choices if one.is_cut] == [])  # once all is laid out
         assert all(one.mapTo(page, QPoint(one.width(), 0)).x() <= page.width() for one in choices)
     finally:
         use_language("en")
