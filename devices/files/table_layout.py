@@ -187,7 +187,7 @@ def fingerprint_of(path: Path) -> str:
 
 def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_HeadLine]:
     """The first lines that are whole; raises FileRefusedError for what is no text."""
-    with _opened(path, encoding, is_squeezed) as file:
+    with _opened(path, encoding, is_squeezed, HEAD_BYTES if is_squeezed else 0) as file:
         head = file.read(HEAD_BYTES)
         is_cut = bool(file.read(1))
     if set(head) & set(CONTROLS):
