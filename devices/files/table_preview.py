@@ -64,7 +64,7 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         found=_found(layout, choices, sensors),
         sensors=tuple(sensors[:MOST_SENSORS]),
         is_by_values=(choices.acc, choices.gyr) != (stated.acc, stated.gyr),
-        is_cut=path.stat().st_size > PREVIEW_BYTES,
+        is_cut=layout.is_cut,
         refusal=why,
         unread=() if why is not None else tuple(unread),
     )

@@ -207,6 +207,19 @@ def test_only_the_beginning_of_a_large_file_is_read(tmp_path: Path, monkeypatch:
     assert 1.0 < preview.sensors[0].length_s < 5.0
 
 
+def test_a_utf_16_table_that_is_read_whole_is_not_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = table(tmp_path / "a.csv")
+    text = path.read_text()
+    path.write_text(text, encoding="utf-16")
+    monkeypatch.setattr("devices.files.table_preview.PREVIEW_BYTES", len(text))
+    preview = preview_of(path, STATED)
+    assert not preview.is_cut
+    assert len(text) < path.stat().st_size
+    assert preview.sensors[0].length_s == pytest.approx(np.ptp(LEFT.time_s))
+    monkeypatch.setattr("devices.files.table_preview.PREVIEW_BYTES", len(text) - 1)
+    assert preview_of(path, STATED).is_cut
+
+
 def test_of_a_long_table_separated_by_blanks_only_the_head_is_read_for_its_layout(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
