@@ -229,12 +229,12 @@ def test_of_a_long_table_separated_by_blanks_only_the_head_is_read_for_its_layou
     path.write_text("\n".join([lines[0], *lines[1:] * 50]))
     read: list[int] = []
 
-    class Counted(BufferedReader):
+    class CountedFile(BufferedReader):
         def read(self, size: int | None = -1, /) -> bytes:
             read.append(len(found := super().read(size)))
             return found
 
-    monkeypatch.setattr(table_layout, "open_text", lambda path, _encoding: Counted(FileIO(path)))
+    monkeypatch.setattr(table_layout, "open_text", lambda path, _encoding: CountedFile(FileIO(path)))
     assert path.stat().st_size > 8 * HEAD_BYTES
     assert fingerprint_of(path) == short
     assert sum(read) <= 2 * (HEAD_BYTES + 1)  # as it is, and with its blanks squeezed
