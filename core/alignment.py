@@ -219,9 +219,10 @@ def changed_between(
     shared = next((one for one in back if one in forth), None)
     if shared is None:
         return None
-    undone = [change for one in back[: back.index(shared)] for change in undoing(_of(changes, one))]
-    done = [change for one in forth[: forth.index(shared)][::-1] for change in _of(changes, one)]
-    return added(*undone, *done)
+    undone, done = (
+        [change for one in way[: way.index(shared)][::-1] for change in _of(changes, one)] for way in (back, forth)
+    )
+    return added(*undoing(added(*undone)), *done)
 
 
 def root_of(changes: Mapping[str, AlignmentChange | None], condition: str) -> str:

@@ -16,7 +16,7 @@ from core.calibration.validity import spans_of_validity
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray
 from core.session import Recording, RecordingKind, Session
-from core.signal.rotations import matrix_from_quaternion
+from core.signal.rotations import matrix_from_quaternion, quaternions_about_vertical
 from core.signal.sensors import SensorTracks
 from core.signal.tracks import at_positions, continuous, nominal_step_s
 from core.verdicts.quality import look_at
@@ -139,9 +139,7 @@ def _direction(q: FloatArray, axis: FloatArray) -> FloatArray:
 
 def _turned_to(q: FloatArray, axis: FloatArray, direction_rad: FloatArray | float) -> FloatArray:
     """Turn about the vertical so that a sensor's axis (3,) has a direction (n,); rotations (n, 4) without jumps."""
-    half = 0.5 * (direction_rad - _direction(q, axis))
-    c, s, (w, x, y, z) = np.cos(half), np.sin(half), q.T
-    turned = np.stack([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w], axis=1)
+    turned = quaternions_about_vertical(direction_rad - _direction(q, axis), q)
     is_known = np.isfinite(turned).all(axis=1)
     turned[is_known] = continuous(turned[is_known])
     turned[~is_known] = np.nan

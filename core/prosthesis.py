@@ -180,5 +180,5 @@ def prostheses_of_text(text: str) -> dict[Side, Prosthesis]:
     """What `prostheses_text` was given; none of anything else."""
     try:
         return prostheses_of_tables(json.loads(text))[0] if text else {}
-    except ValueError:
+    except (ValueError, RecursionError):
         return {}

@@ -14,6 +14,9 @@ ComplexArray = NDArray[np.complexfloating[Any, Any]]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
+GRAVITY_M_S2 = 9.81  # where people walk, about
+G_M_S2 = 9.80665  # the unit g, in which devices and files may state specific force
+
 
 class RateKind(StrEnum):
     """What one angular-rate sample represents: the instant of its stamp, or the mean over the interval before it."""

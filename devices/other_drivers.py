@@ -93,11 +93,11 @@ class _GuardedProtocol:
 
     def __init__(self, offer: Offer, make: Any) -> None:
         self._offer, self.driver = offer, offer.name
-        self._protocol = self._guarded(make)
+        self._protocol = self._guarded(make, may_refuse=False)
         self.version = str(getattr(self._protocol, "version", ""))
 
     def framer(self, info: SourceInfo) -> Framer:
-        return _GuardedFramer(self, self._guarded(lambda: self._protocol.framer(info)))
+        return _GuardedFramer(self, self._guarded(lambda: self._protocol.framer(info), may_refuse=False))
 
     def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         return self._guarded(lambda: self._greeted(channel))
@@ -123,16 +123,12 @@ class _GuardedProtocol:
             raise ValueError("a sensor without a name")
         return replace(info, driver=self.driver, version=self.version), details
 
-    def _guarded(self, act: Any) -> Any:
+    def _guarded(self, act: Any, *, may_refuse: bool = True) -> Any:
         try:
             return act()
-        except (
-            SourceRefusedError,
-            SourceLostError,
-            OSError,
-        ):  # it is not there, or the port is gone: what a driver may say
-            raise
         except Exception as error:  # the edge to a stranger's driver
+            if may_refuse and isinstance(error, SourceRefusedError | SourceLostError):
+                raise  # it is not there, or the channel is gone: what a driver may state of a channel that it uses
             raise self.broken(error) from error
 
 

@@ -424,6 +424,18 @@ def private_lines_among(parts: Iterable[ast.AST]) -> set[int]:
     }
 
 
+def test_gravity_and_the_unit_g_are_figures_of_one_module() -> None:
+    """The simulation has its own: what is measured from its samples is not held against the same constant."""
+    own = [ROOT / "devices" / folder for folder in ("simulation", "emulators")]
+    files = [file for file in python_files(*PACKAGES) if not any(folder in file.parents for folder in own)]
+    naming = {
+        file.relative_to(ROOT).as_posix()
+        for file in files
+        if any(isinstance(node, ast.Constant) and node.value in (9.81, 9.80665) for node in nodes(file))
+    }
+    assert naming == {"core/samples.py"}
+
+
 def test_a_private_member_of_another_is_found() -> None:
     lines = [
         "step._stop()",

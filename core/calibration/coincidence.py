@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.samples import FloatArray, IntArray
+from core.samples import GRAVITY_M_S2, FloatArray, IntArray
 from core.signal.datasets import Datasets
 from core.signal.pair import lever_matrix
 
@@ -17,7 +17,6 @@ CENTRE_PRIOR_M = 0.3  # a sensor sits within a segment's length of the joint
 BIAS_PRIOR_M_S2 = 0.05
 SCALE_M_S2 = 0.5
 STEPS = 3
-GRAVITY_M_S2 = 9.81
 MIN_CLEAR = 50  # samples
 
 

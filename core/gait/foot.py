@@ -11,10 +11,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.signal import find_peaks
 
-from core.samples import FloatArray, IntArray
+from core.samples import GRAVITY_M_S2, FloatArray, IntArray
 from core.signal.pair import OrientedTrack, moving_mean
 
-GRAVITY_M_S2 = 9.81
 CALM_RAD_S, CALM_M_S2 = 0.3, 0.6  # how much a foot still moves in the middle of an ordinary stance
 CALM_WINDOW_S = 0.1
 MIN_CALM_RATIO = 15.0  # a step moves the foot so much more than the stances around it (mean squares)

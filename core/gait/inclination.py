@@ -9,11 +9,10 @@ is.
 import numpy as np
 
 from core.gait.strides import Strides
-from core.samples import FloatArray
+from core.samples import GRAVITY_M_S2, FloatArray
 from core.signal.filters import filtered_offline
 from core.signal.rotations import joint_frame, wrap
 
-G_M_S2 = 9.81
 COARSE_S = 0.05  # of a filter that takes seconds
 STARTING_S = 0.15  # before its first contact a foot gets going, and after its last it stops
 
@@ -65,7 +64,7 @@ def tilt_by_speeding_up(strides: Strides, time_s: FloatArray) -> FloatArray:
         here = (coarse_s > from_s) & (coarse_s < to_s)
         moving[here] = np.interp(coarse_s[here], middle_s[mine], velocity[mine])
     gained = np.gradient(moving, COARSE_S)
-    force = np.column_stack([gained.real, gained.imag, np.full(len(gained), G_M_S2)])
+    force = np.column_stack([gained.real, gained.imag, np.full(len(gained), GRAVITY_M_S2)])
     turned = filtered_offline(np.zeros_like(force), force, None, COARSE_S)
     heading = np.interp(coarse_s, middle_s, heading_rad)
     forward = (-2.0 * turned[:, 2] + 2j * turned[:, 1]) * np.exp(-1j * heading)

@@ -12,14 +12,13 @@ from core.gait.foot import (
     CALM_FLOOR,
     CALM_M_S2,
     CALM_RAD_S,
-    GRAVITY_M_S2,
     MIN_CALM_RATIO,
     MIN_HEEL_UP_RAD,
     MIN_SWING_M_S,
     MOVING_RAD_S,
 )
 from core.gait.strides import MAX_STRIDE_S
-from core.samples import FloatArray
+from core.samples import GRAVITY_M_S2, FloatArray
 
 RESTLESS = (
     10.0  # in units of CALM squared; a foot on the floor moves less, unless its sensor sits loosely or it slides:

@@ -12,7 +12,6 @@ import numpy as np
 from core.calibration.coincidence import (
     BIAS_PRIOR_M_S2,
     CENTRE_PRIOR_M,
-    GRAVITY_M_S2,
     SCALE_M_S2,
     JointForces,
     disagreement,
@@ -22,7 +21,7 @@ from core.calibration.coincidence import (
     turned_about_vertical,
 )
 from core.calibration.joint_axis import heading_prior
-from core.samples import FloatArray
+from core.samples import GRAVITY_M_S2, FloatArray
 from core.signal.datasets import Datasets, gather, knot_positions, moving_indices
 from core.signal.pair import Pair
 from core.signal.rotations import wrap

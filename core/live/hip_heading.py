@@ -10,11 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, GRAVITY_M_S2, SCALE_M_S2
+from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, SCALE_M_S2
 from core.hip.heading import MIN_MOVING_S, RIVAL_RAD, SCAN_RAD, SD_FACTOR
 from core.hip.measure import MAX_3D_SD_RAD, MAX_DISAGREEMENT, MIN_MARGIN
 from core.live.joint_force import NO_FORCES, SPACING_S, FeltForces, joined_forces
-from core.samples import FloatArray
+from core.samples import GRAVITY_M_S2, FloatArray
 from core.signal.pair import MOVING_RAD_S, MOVING_WINDOW_S
 from core.signal.rotations import wrap
 

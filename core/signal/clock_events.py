@@ -13,9 +13,9 @@ from core.samples import FloatArray, ImuBlock
 from core.signal.clock_jumps import jump_of, spans_of
 from core.signal.reception import gaps_of, outside_of, pauses_among, rate_percent
 from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_received
+from core.verdicts.gates import LIMITS
 
 TOGETHER_S = 0.5  # sensors that are restarted by one command do so within less
-SPARSE_PERCENT = 90.0  # of the rate that was set: below it, the verdicts report no angle (`rate` of TRUTH)
 MOST_JUMPS = 20  # of one clock: what jumps more often is no clock
 MOST_SPANS = 200  # of one sensor, between gaps over a second: looking for jumps takes their square
 MOST_PAUSES = 50  # what pauses more often loses samples: nobody splits a recording so often
@@ -178,7 +178,8 @@ def _losses(number: int, received_s: FloatArray, pauses: Sequence[tuple[float, f
 
 def _sparse(number: int, received_s: FloatArray, nominal_hz: float | None) -> list[ClockEvent]:
     percent = rate_percent(received_s, nominal_hz)
-    if percent is None or nominal_hz is None or percent >= SPARSE_PERCENT:
+    least_percent = 100.0 - LIMITS.rate_percent[1]  # below it, the verdicts report no angle
+    if percent is None or nominal_hz is None or percent >= least_percent:
         return []
     span = float(received_s[0]), float(received_s[-1])
     rates_hz = nominal_hz * percent / 100.0, nominal_hz

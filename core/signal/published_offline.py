@@ -22,7 +22,7 @@ from core.signal.published_filter import (
     product,
     unit_product,
 )
-from core.signal.rotations import matrix_from_quaternion
+from core.signal.rotations import matrix_from_quaternion, quaternions_about_vertical
 
 TAU_MAG_S, TAU_FIELD_S, TAU_REFERENCE_S = 9.0, 0.05, 20.0
 SIZE_SHARE, DIP_RAD = 0.1, radians(10.0)  # by which a field may differ
@@ -99,9 +99,7 @@ def _turned_to_north(
     delta = np.arctan2(field[:, 0], field[:, 1])
     delta = _smooth_angle(delta, is_disturbed, step_s)
     delta = _smooth_angle(delta[::-1], is_disturbed[::-1], step_s)[::-1]
-    c, s = np.cos(0.5 * delta), np.sin(0.5 * delta)
-    w, x, y, z = q_earth_from_sensor.T
-    return np.column_stack([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w])
+    return quaternions_about_vertical(delta, q_earth_from_sensor)
 
 
 def _disturbed(found: FilterPass, mag: FloatArray, step_s: float) -> BoolArray:

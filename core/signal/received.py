@@ -8,9 +8,9 @@ from core.samples import ImuBlock
 from core.session import Recording
 from core.signal.reception import gaps_of, lost_percent
 from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_received, nominal_step_s
+from core.verdicts.gates import LIMITS
 
 EDGE_S = 0.5  # sensors that start and end within less of each other miss nothing: their packets come at other times
-LOST_PERCENT = 1.0  # more than what the verdicts take as Good (`loss` of TRUTH)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +27,8 @@ class SamplesReceived:
 
     @property
     def is_lossy(self) -> bool:
-        """Whether strides may have suffered."""
-        return self.longest_gap_s > MAX_REPORTED_GAP_S or self.lost_percent > LOST_PERCENT
+        """Whether strides may have suffered: more was lost than what the verdicts take as Good."""
+        return self.longest_gap_s > MAX_REPORTED_GAP_S or self.lost_percent > LIMITS.lost_percent[0]
 
 
 def samples_received(

@@ -62,6 +62,13 @@ def turn_about_vertical(heading_rad: FloatArray, v: FloatArray) -> FloatArray:
     return turned
 
 
+def quaternions_about_vertical(heading_rad: FloatArray, q: FloatArray) -> FloatArray:
+    """Give Rz(heading) q of quaternions (n, 4), earth from sensor, scalar first, earth z up; headings (n,)."""
+    c, s = np.cos(0.5 * heading_rad), np.sin(0.5 * heading_rad)
+    w, x, y, z = q.T
+    return np.stack([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w], axis=1)
+
+
 def matrix_from_quaternion(q: FloatArray) -> FloatArray:
     """Give the rotation matrices (n, 3, 3) of unit quaternions (n, 4), scalar first."""
     return Rotation.from_quat(q, scalar_first=True).as_matrix()

@@ -115,7 +115,7 @@ def planned_of_text(text: str) -> PlannedTest | None:
     """What `planned_text` wrote; None of an empty text, and of one that contains something else."""
     try:
         table = json.loads(text) if text else None
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     return planned_of_table(table) if isinstance(table, dict) else None
 

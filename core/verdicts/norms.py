@@ -17,12 +17,11 @@ import numpy as np
 from core.body import JointKind
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
-from core.samples import FloatArray
+from core.samples import GRAVITY_M_S2, FloatArray
 
 MAX_SPEED_DIFFERENCE_M_S = 0.15  # further from its speed, the band of curves is not drawn
 SPEED_CLASSES = ("slow", "comfortable", "fast")
 FROUDE_LIMITS = (0.1304, 0.2306)  # where one class ends and the next begins: terciles of the source's walks
-GRAVITY_M_S2 = 9.81
 LEG_PER_HEIGHT = 0.53  # nobody types the length of a leg
 LEG_LENGTHS_M = (0.75, 1.00)  # of adults, where nobody typed a height either
 ADULT_FROM_YEARS = 18  # every band there is was measured on adults

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
+from core.samples import G_M_S2
 from devices.clocks.clock import Unwrapping
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
@@ -13,7 +14,7 @@ from devices.transport.channels import Channel
 DRIVER, VERSION, MODEL = "csv", "1", "CSV over serial"
 MOST_LINE = 1024
 RATE_UNITS = {"rad/s": 1.0, "deg/s": math.pi / 180.0, "mdeg/s": math.pi / 180e3}
-FORCE_UNITS = {"m/s2": 1.0, "g": 9.80665, "mg": 9.80665e-3}
+FORCE_UNITS = {"m/s2": 1.0, "g": G_M_S2, "mg": G_M_S2 / 1000}
 MOST_RAD_S, MOST_M_S2 = 100.0, 500.0  # no sensor worn by a person measures more
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 WRAPS = (0, 16, 24, 32)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.samples import FloatArray
+from core.samples import G_M_S2, FloatArray
 from devices.drivers.csv_serial import FORCE_UNITS, MOST_LINE, SEPARATORS, Columns
 from devices.live import SourceLostError, SourceRefusedError
 from devices.transport.channels import Channel
@@ -21,7 +21,6 @@ from devices.transport.ports import PortInfo
 LEAST_LINES, LEAST_COLUMNS = 3, 7
 KEPT_LINES = 200
 STILL = (0.7, 1.4)  # times gravity: what an acceleration's size is about, whatever moves
-G = 9.80665
 TICKS_HZ = (1.0, 1e3, 1e6)  # seconds, milliseconds, microseconds
 
 
@@ -74,7 +73,7 @@ def guessed(lines: Sequence[str]) -> Columns | None:
         for force in ((first, first + 1, first + 2) for first in range(count - 2))
         for rate in (_beside(force, -1), _beside(force, 1))
         if min(rate) >= 0 and max(rate) < count and time not in (*rate, *force)
-        if STILL[0] < (size := float(np.median(np.linalg.norm(table[:, force] * scale, axis=1))) / G) < STILL[1]
+        if STILL[0] < (size := float(np.median(np.linalg.norm(table[:, force] * scale, axis=1))) / G_M_S2) < STILL[1]
     ]
     if not found:
         return None

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from core.samples import ImuBlock
+from core.samples import G_M_S2, ImuBlock
 from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.clocks.live_clock import LiveClock
@@ -34,15 +34,14 @@ MOST_SAMPLES = 4096
 BUFFER_S = 30
 PLAUSIBLE_S = 0.5  # so late a sample may be that is stamped by Lab Streaming Layer's clock
 EARLY_S = 0.005  # and so early, for no measurement of a clock is exact
-G = 9.80665
 RATE_UNITS = {
     **dict.fromkeys(("deg/s", "deg/sec", "degree/s", "degrees/s", "degree/second", "dps", "°/s"), np.pi / 180),
     **dict.fromkeys(("rad/s", "rad/sec", "radian/s", "radians/s"), 1.0),
 }
 FORCE_UNITS = {
     **dict.fromkeys(("m/s^2", "m/s2", "m/s²", "m/s/s", "m/s**2", "ms-2", "m/sec^2"), 1.0),
-    "g": G,
-    "mg": G / 1000,
+    "g": G_M_S2,
+    "mg": G_M_S2 / 1000,
 }
 RATE_WORDS, FORCE_WORDS = ("gyr", "rate", "angvel", "angular"), ("acc",)
 GROUP, PORT = "224.0.0.183", 16571  # of the addresses that senders listen to the one that no router passes on

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from datetime import date
 from struct import Struct
 
+from core.samples import G_M_S2
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import Framer, Received, ask, listen
@@ -17,12 +18,11 @@ from devices.transport.channels import Channel
 
 DRIVER, VERSION, MODEL = "witmotion", "1", "WitMotion"
 EMULATED = "EMULATED"  # how the numbers of our own emulator begin
-G = 9.80665
 HEAD, SIZE, KNOWN_AFTER = 0x55, 11, 13
 TIME, FORCE, RATE, ANGLES, FIELD, ORIENTATION, REGISTERS = 0x50, 0x51, 0x52, 0x53, 0x54, 0x59, 0x5F
 FRAMES = range(0x50, 0x60)
 CLOCK, AXES = Struct("<6BH"), Struct("<4h")
-FORCE_UNIT, RATE_UNIT, ORIENTATION_UNIT = 16 * G / 32768, math.radians(2000) / 32768, 1 / 32768
+FORCE_UNIT, RATE_UNIT, ORIENTATION_UNIT = 16 * G_M_S2 / 32768, math.radians(2000) / 32768, 1 / 32768
 UNLOCK = bytes.fromhex("FF AA 69 88 B5")
 CONTENT_AT, RATE_AT, READ_AT, NUMBER_AT = 0x02, 0x03, 0x27, 0x7F
 CONTENT = 0b1111  # time, force, rate; and angles, since a frame is sure once the next one begins

@@ -9,6 +9,7 @@ import math
 from pathlib import Path
 from struct import Struct
 
+from core.samples import G_M_S2
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import DecodedSensor, SourceInfo
 from devices.stream import Framer, Received, ask, decoded
@@ -17,7 +18,6 @@ from devices.transport.channels import Channel
 DRIVER, VERSION, MODEL = "ximu3", "1", "x-IMU3"
 EMULATED = "emulated x-IMU3"  # what our own emulator calls itself
 BASE_HZ = 400  # divided by the message rate divisor
-G = 9.80665
 RAD = math.pi / 180.0
 MOST_DEG_S, MOST_G = 2400.0, 20.0  # ranges of 2000 deg/s and 16 g, and what calibration adds
 MOST_MESSAGE = 4096  # bytes; the maker's own decoder holds as many
@@ -118,7 +118,7 @@ class Ximu3Framer:
             raise DamagedError
         if not (-heavy < ax < heavy and -heavy < ay < heavy and -heavy < az < heavy):
             raise DamagedError
-        self.received.rows.append((us / 1e6, gx * RAD, gy * RAD, gz * RAD, ax * G, ay * G, az * G))
+        self.received.rows.append((us / 1e6, gx * RAD, gy * RAD, gz * RAD, ax * G_M_S2, ay * G_M_S2, az * G_M_S2))
 
     def _quaternion(self, message: bytes) -> None:
         us, w, x, y, z = numbers_of(message, QUATERNION, 4)

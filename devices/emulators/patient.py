@@ -11,14 +11,13 @@ from typing import Protocol
 import numpy as np
 
 from core.body import LEG_SITES, Joint, Site
-from core.samples import FloatArray, ImuBlock
+from core.samples import G_M_S2, FloatArray, ImuBlock
 from core.session import Recording, RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.drivers.shimmer3 import EMULATED as SHIMMER3
 from devices.drivers.shimmer3 import calibrating
 from devices.drivers.witmotion import EMULATED as WITMOTION
 from devices.drivers.ximu3 import EMULATED as XIMU3
-from devices.drivers.ximu3 import G
 from devices.drivers.xsens_mti import EMULATED as XSENS_MTI
 from devices.emulators.csv_lines import LineVoice
 from devices.emulators.shimmer3 import ACC_CALIBRATION, GYR_CALIBRATION, Shimmer3Voice
@@ -199,7 +198,7 @@ class EmulatedSensor:
     def _in_degrees(self, number: int) -> Sequence[float]:
         row = self._measured(number)
         rate = np.degrees(row[:3]).clip(-MOST_DEG_S, MOST_DEG_S)
-        return [*rate.tolist(), *(row[3:] / G).clip(-MOST_G, MOST_G).tolist()]
+        return [*rate.tolist(), *(row[3:] / G_M_S2).clip(-MOST_G, MOST_G).tolist()]
 
     def _raw(self, number: int) -> Sequence[int]:
         row = self._measured(number)

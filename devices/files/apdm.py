@@ -28,8 +28,8 @@ from devices.files.trial import ImportedSensor, ImportedTrial
 
 MONITORS, TEST_NAME, TIME = "Format=", "Test Name:", "Time"
 HEAD_LINES = 5  # at most, of either dialect
-HEAD_LETTERS = 2000
-DELIMITERS = ",;\t"
+HEAD_LETTERS = 40  # of the first cell and the sign after it
+DELIMITER = re.compile(r"(?:Format=\d+|Test Name:) *([,;\t])", re.ASCII)  # decimal commas may outnumber any delimiter
 EXPORT_AGAIN = "Export the file again as CSV, from Moveo, Mobility Lab or Motion Studio"
 WITH_IT = "Export the file again, including the missing data"
 PER_MONITOR = {"Accelerometer": 3, "Gyroscope": 3, "Magnetometer": 3, "Orientation": 4}
@@ -56,9 +56,9 @@ def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
     where = path.name
     with io.TextIOWrapper(open_text(path), encoding="utf-8-sig", newline="") as file:
         try:
-            beginning = file.read(HEAD_LETTERS)
+            stated = DELIMITER.match(file.read(HEAD_LETTERS))
             file.seek(0)
-            reader = csv.reader(file, delimiter=max(DELIMITERS, key=beginning.count))
+            reader = csv.reader(file, delimiter=stated[1] if stated else ",")
             head = list(islice(reader, HEAD_LINES))
             first = head[0][0].strip() if head and head[0] else ""
             if first.startswith(MONITORS):

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
-from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
+from core.samples import G_M_S2, FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.bids_tables import (
     CHANNELS,
     ENDINGS,
@@ -41,7 +41,7 @@ SYSTEM = re.compile(r"_tracksys-([A-Za-z0-9]+)")
 LAST_MOVED_YEAR = 1925  # BIDS moves times that must not be known to before its end
 DERIVED = "derived"  # in our column of what rates are
 AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
-ACC_UNITS = {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "m.s-2": 1.0, "g": 9.80665}
+ACC_UNITS = {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "m.s-2": 1.0, "g": G_M_S2}
 RATE_UNITS = {"rad/s": 1.0, "deg/s": np.pi / 180, "°/s": np.pi / 180, "dps": np.pi / 180}
 WINDOW_S = 0.25  # over which a sensor turns enough to see whether its acceleration turns with it
 IN_SENSOR_AXES = "Export the sensors' own data, in sensor axes"

@@ -7,7 +7,7 @@ from devices.files.csv_tables import FORMAT as CSV
 from devices.files.csv_tables import choices_for
 from devices.files.formats import format_of, known_format, why_not_recognised
 from devices.files.refusal import FileRefusedError
-from devices.files.sensor_mapping import read_mapping, without_mappings
+from devices.files.sensor_mapping import is_mapping, read_mapping
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_names import without_site
 from devices.files.table_choices import NOTHING_STATED, StatedChoices
@@ -33,18 +33,19 @@ def gather(
     refused: list[FileRefusedError] = []
     tables: list[str] = []
     found: dict[tuple[str, Path, str], list[str]] = {}
-    opened, mappings = without_mappings(_opened_up(paths))
-    for path in opened:
+    mappings: list[Path] = []
+    for path in _opened_up(paths, refused):
         try:
+            if is_mapping(path):
+                mappings.append(path)
+                continue
             is_stated = choices_for(path, choices) is not None
             name = CSV if is_stated else _format(path, with_others)
         except OSError as problem:
-            why = problem.strerror or type(problem).__name__
-            refused.append(
-                FileRefusedError(
-                    path.name, "the file or folder cannot be read ({why})", "Check the permissions", why=why
-                )
-            )
+            refused.append(_unreadable(path, problem))
+            continue
+        except FileRefusedError as refusal:  # what holds no tables is opened to be recognised, and may be damaged
+            refused.append(refusal)
             continue
         if name is None:
             refused.append(why_not_recognised(path))
@@ -102,13 +103,21 @@ def _common(name: str, path: Path) -> str:
     return without_site(path.stem) if own.is_one_sensor else path.name
 
 
-def _opened_up(paths: Sequence[Path]) -> list[Path]:
+def _unreadable(path: Path, problem: OSError) -> FileRefusedError:
+    why = problem.strerror or type(problem).__name__
+    return FileRefusedError(path.name, "the file or folder cannot be read ({why})", "Check the permissions", why=why)
+
+
+def _opened_up(paths: Sequence[Path], refused: list[FileRefusedError]) -> list[Path]:
     opened: list[Path] = []
     for path in sorted(set(paths)):
-        if path.is_dir() and not (path / FILE_NAME).is_file() and format_of(path) is None:
-            opened += sorted(inner for inner in path.iterdir() if not inner.name.startswith("."))
-        else:
-            opened.append(path)
+        try:
+            if path.is_dir() and not (path / FILE_NAME).is_file() and format_of(path) is None:
+                opened += sorted(inner for inner in path.iterdir() if not inner.name.startswith("."))
+            else:
+                opened.append(path)
+        except OSError as problem:
+            refused.append(_unreadable(path, problem))
         if len(opened) > MOST_FILES:
             raise FileRefusedError(
                 path.name,

@@ -8,7 +8,7 @@ orientation, it gives the rates' unit by itself.
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from core.samples import FloatArray
+from core.samples import GRAVITY_M_S2, FloatArray
 from devices.files.orientation_rates import Numbers, derive_rates
 from devices.files.refusal import FileRefusedError, quoted
 
@@ -21,7 +21,6 @@ FEW = 0.999  # of the rates that have to be possible: one damaged sample is no o
 NO_GRAVITY = "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2"
 TOO_FAST = "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor"
 RECORD_AGAIN = "Check the sensor's range and calibration with the manufacturer's program, and record again"
-GRAVITY_M_S2 = 9.81
 WINDOW_S, MOST_WINDOWS, LEAST_SAMPLES = 2.0, 60, 100  # as long as steps cancel out, and the bias of rates does not show
 # from gravity: the right unit at most, and then the other one at least
 NEAR_M_S2 = ((0.3, 0.6), (0.1, 0.4))

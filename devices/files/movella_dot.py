@@ -58,7 +58,7 @@ FEW_STEPS = 0.05  # a shorter step than this share of them all is no period but 
 SAME_GRID_S = 2e-5  # synchronised sensors stamp the same instants; two that are not do so once in two hundred times
 ONE_TRIAL_S = 60.0  # the app starts its sensors one after the other
 CLOCK = "Movella DOT"
-GRAVITY_M_S2 = 9.8127  # by which the sensors make free acceleration
+DOT_GRAVITY_M_S2 = 9.8127  # by which the sensors make free acceleration
 ROTATION_ERROR = 0.01
 WRONG_UNIT = 0.05  # of the orientation's turning; rates in rad/s that are taken for deg/s are a 57th
 MEASURE_AGAIN = (
@@ -305,7 +305,7 @@ def _specific_force(
             "the acceleration in the file is without gravity (FreeAcc_X). There is no orientation to restore gravity",
             MEASURE_AGAIN,
         )
-    return with_gravity(table.matrix(FREE_ACC)[is_new], q, GRAVITY_M_S2), True
+    return with_gravity(table.matrix(FREE_ACC)[is_new], q, DOT_GRAVITY_M_S2), True
 
 
 def _starts_s(files: Sequence[DotFile]) -> list[float]:

@@ -33,12 +33,12 @@ from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile, read_each
 
-GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels, by which a unit is found
+GRAVITY_RANGE_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg feels at rest or walking, which shows the unit
 LEAST_DOWN = 0.3  # of the size of the mean, where a unit is found by size: acceleration without gravity has none
 MOST_WITH_DIGITS = 1000.0
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
-MOST_FELT = GRAVITY_M_S2[1] / min(FORCE_UNITS.values())  # as a number, in the smallest unit
+MOST_FELT = GRAVITY_RANGE_M_S2[1] / min(FORCE_UNITS.values())  # as a number, in the smallest unit
 NO_GRAVITY = "the median of the acceleration {names} is {middle}, which does not match gravity in {units}"
 FREE = "Export acceleration in m/s2 with gravity, not free or linear acceleration"
 COUNTS = "Export acceleration in m/s2, not the counts of the sensor's converter"
@@ -197,7 +197,7 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
         return reported or "m/s2"
     if reported and FELT_M_S2[0] < middle * FORCE_UNITS[reported] < FELT_M_S2[1]:
         return reported
-    least, most = GRAVITY_M_S2
+    least, most = GRAVITY_RANGE_M_S2
     fits = [unit for unit, scale in FORCE_UNITS.items() if least < middle * scale < most]
     if reported and fits:
         raise FileRefusedError(

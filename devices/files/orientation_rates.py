@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.samples import BoolArray, FloatArray, RateKind
+from core.samples import GRAVITY_M_S2, BoolArray, FloatArray, RateKind
 
 Numbers = NDArray[np.int64]
-GRAVITY_M_S2 = 9.81
 CLEARLY = 0.6  # of the other's error: then the rates are of this kind and not of the other
 
 

@@ -78,6 +78,12 @@ class TableLayout:
         """What opens the table's text for `tables.read_rows`."""
         return partial(_opened, self.path, self.encoding, self.header.delimiter == " ", self.most_bytes)
 
+    @property
+    def is_cut(self) -> bool:
+        """Whether the text goes on behind `most_bytes`, which are of UTF-8 whatever the file's encoding."""
+        with open_text(self.path, self.encoding) as file:
+            return file.seek(0, io.SEEK_END) > self.most_bytes > 0
+
     def cells(self, name: str) -> list[str]:
         """The first cells of a column."""
         place = self.names.index(name)
@@ -187,7 +193,7 @@ def fingerprint_of(path: Path) -> str:
 
 def _lines(path: Path, where: str, encoding: str, is_squeezed: bool) -> list[_HeadLine]:
     """The first lines that are whole; raises FileRefusedError for what is no text."""
-    with _opened(path, encoding, is_squeezed) as file:
+    with _opened(path, encoding, is_squeezed, HEAD_BYTES if is_squeezed else 0) as file:
         head = file.read(HEAD_BYTES)
         is_cut = bool(file.read(1))
     if set(head) & set(CONTROLS):

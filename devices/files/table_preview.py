@@ -16,7 +16,7 @@ from devices.drivers.csv_serial import FORCE_UNITS
 from devices.files.column_names import SensorColumns, meaning_of
 from devices.files.csv_tables import columns_in, is_text_time, sensor_column, tables_of, time_column
 from devices.files.magnitudes import middle_size
-from devices.files.named_columns import GRAVITY_M_S2, LEAST_DOWN, halves_of_table, sensors_of_table
+from devices.files.named_columns import GRAVITY_RANGE_M_S2, LEAST_DOWN, halves_of_table, sensors_of_table
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import CLOCK, COUNT, NONE, PreviewedSensor, TableChoices, TablePreview
 from devices.files.table_layout import TableLayout, fingerprint_of, layout_of, lines_of_head
@@ -64,7 +64,7 @@ def preview_of(path: Path, stated: TableChoices) -> TablePreview:
         found=_found(layout, choices, sensors),
         sensors=tuple(sensors[:MOST_SENSORS]),
         is_by_values=(choices.acc, choices.gyr) != (stated.acc, stated.gyr),
-        is_cut=path.stat().st_size > PREVIEW_BYTES,
+        is_cut=layout.is_cut,
         refusal=why,
         unread=() if why is not None else tuple(unread),
     )
@@ -196,5 +196,5 @@ def _is_force(vectors: FloatArray) -> bool:
     middle = middle_size(vectors)
     if np.isnan(middle) or float(np.linalg.norm(np.nanmean(vectors, axis=0))) < LEAST_DOWN * middle:
         return False
-    least, most = GRAVITY_M_S2
+    least, most = GRAVITY_RANGE_M_S2
     return any(least < middle * scale < most for scale in FORCE_UNITS.values())

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from core.findings import Finding, Severity
-from core.samples import FloatArray, ImuBlock, SensorInfo
+from core.samples import G_M_S2, FloatArray, ImuBlock, SensorInfo
 from devices.clocks.clock import BACK_S
-from devices.drivers.ximu3 import DRIVER, MODEL, G, Ximu3Framer, received_in
+from devices.drivers.ximu3 import DRIVER, MODEL, Ximu3Framer, received_in
 from devices.files.clock_repair import FileClock, repaired, usual_rate, whole_clock
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
@@ -103,7 +103,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
         sensor=name,
         time_s=time_s[is_new],
         gyr_rad_s=np.radians(table.matrix(GYR)[is_new]),
-        acc_m_s2=table.matrix(ACC)[is_new] * G,
+        acc_m_s2=table.matrix(ACC)[is_new] * G_M_S2,
         q_earth_from_sensor=_orientation(path.with_name(BESIDE_INERTIAL), time_s[is_new]),
     )
     return block, [*table.findings, *clock.findings]

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
+from core.samples import G_M_S2, BoolArray, FloatArray, ImuBlock, SensorInfo
 from devices.files.clock_repair import FileClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
@@ -21,7 +21,7 @@ from devices.files.site_names import without_site
 from devices.files.tables import Table, read_csv
 from devices.files.trial import OF_XIMU, REGISTERS, ImportedSensor, ImportedTrial, read_each, registers_beside
 
-FORMAT, MODEL, G = "ximu", "x-IMU", 9.80665
+FORMAT, MODEL = "ximu", "x-IMU"
 NUMBER = "packet number"
 NUMBERS = "Packet number", "Packet Number"
 GYR = tuple(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")
@@ -87,7 +87,7 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
         )
     counts = table.numbers[next(name for name in NUMBERS if name in table.numbers)]
     times = _times(counts, rate_hz, table, where)
-    acc, gyr = table.matrix(ACC)[times.is_kept] * G, np.radians(table.matrix(GYR)[times.is_kept])
+    acc, gyr = table.matrix(ACC)[times.is_kept] * G_M_S2, np.radians(table.matrix(GYR)[times.is_kept])
     name = _name(path)
     check_magnitudes(acc, gyr, name, where, gyr_unit="deg/s")
     mag = table.matrix(MAG)[times.is_kept] if set(MAG) <= set(table.numbers) else None

@@ -11,6 +11,7 @@ from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource, moved
 from devices.simulation.walker import CourseKind, Standing, TimedCourse, Walk, WalkerSettings
 
 SPEED_M_S = 1.19  # as in the demonstration's walks
+BESIDE_TAPES_M = 5.0  # 2 m before the first tape, and beyond the second
 
 
 class DemonstrationPatient(ReplaySource):
@@ -53,7 +54,9 @@ class DemonstrationPatient(ReplaySource):
         if planned.lap_m is not None:
             course = replace(course, lap_m=planned.lap_m)
         if planned.course_m is not None:
-            course = replace(course, up_and_go=replace(course.up_and_go, cone_m=planned.course_m))
+            straight_m = planned.course_m + BESIDE_TAPES_M
+            there_and_back = replace(course.up_and_go, cone_m=planned.course_m)
+            course = replace(course, straight_m=straight_m, up_and_go=there_and_back)
         self._walk([course])
 
     def _walk(self, walks: Sequence[Walk | TimedCourse]) -> None:

@@ -320,6 +320,7 @@ class TimedCourse:
     seed: int = 0
     speed_m_s: float = 1.1
     lap_m: float = 15.0  # of the courses to and fro, from cone to cone
+    straight_m: float = 15.0  # of the walk between two tapes, with the ways before and after them
     pauses: int = 0  # how often the patient stops on the way, in courses to and fro
     hesitates: bool = False  # before a turn the patient waits for a moment and takes shorter steps
     slowing: float = 0.0  # by what share the speed falls from the first to the last step

@@ -346,7 +346,7 @@ def _bouts(course: TimedCourse, rng: np.random.Generator) -> list[Bout]:
     if course.kind is CourseKind.STAIRS:
         return [Bout(_stairs(course, rng), (), 0.5, 1.5)]
     if course.kind is CourseKind.TEN_METRES:
-        return [Bout(_straight(course, 15.0, 0.0, rng), (), 0.5, 1.5)]
+        return [Bout(_straight(course, course.straight_m, 0.0, rng), (), 0.5, 1.5)]
     if course.kind is CourseKind.UP_AND_GO:
         pieces = up_and_go_pieces(course, _pace(course), rng)
         return [Bout(steps_of(pieces), bends_of(pieces), 0.5, 0.4)]

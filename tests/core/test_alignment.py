@@ -83,6 +83,14 @@ def test_of_programs_and_settings_the_first_state_and_the_last_count(
     assert added(*net, *undoing(net)) == ()
 
 
+def test_the_way_back_from_a_setting_that_was_changed_twice_leads_to_its_first_value() -> None:
+    parts = in_turn(["Walk 1", "Walk 2", "Stairs"], [10.0, 20.0, 30.0])
+    back = changed_between({"A": None, "B": AlignmentChange("A", tuple(parts))}, "B", "A")
+    assert back == (
+        NetChange(KNEE, switched=(Switched("", "Stairs", "Walk 1"), Switched("Swing flexion", 30.0, 10.0))),
+    )
+
+
 def test_a_program_is_undone_by_the_one_before_however_it_was_typed() -> None:
     to_2 = PartChange(KNEE, program_before="Walk 1", program="Walk 2", setting="Stance", setting_value=5.0)
     back = PartChange(KNEE, program_before="walk 2", program="WALK 1", setting="stance ", setting_before=5.0)

@@ -99,7 +99,9 @@ def test_what_is_stated_comes_out_of_a_file_and_a_line_as_it_was(one: Prosthesis
     assert bool(prostheses_text(worn)) is (one != NOT_STATED)
 
 
-@pytest.mark.parametrize("text", ["", "no JSON", "3", "[]", '{"left": 3}', '{"middle": {}}', '{"left": {"level": 1}}'])
+@pytest.mark.parametrize(
+    "text", ["", "no JSON", "3", "[]", "[" * 100_000, '{"left": 3}', '{"middle": {}}', '{"left": {"level": 1}}']
+)
 def test_a_line_of_something_else_states_nothing(text: str) -> None:
     assert prostheses_of_text(text) == {}
 

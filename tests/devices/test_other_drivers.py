@@ -34,6 +34,8 @@ class Framer:
 
 class Protocol:
     driver, version = "{key}", "1"
+    def __init__(self):
+        {made}
     def framer(self, info):
         {framer}
     def greet(self, channel):
@@ -46,8 +48,10 @@ OFFER = Driver("{key}", "Stranger", "By nothing at all.", None, Protocol, (11520
 GREETS = 'return SourceInfo("{key}", "1", sensors=("one",)), SensorDetails()'
 
 
-def source_of(key: str, feed: str = "pass", framer: str = "return Framer()", greet: str = GREETS) -> str:
-    return GOOD.format(key=key, feed=feed, framer=framer, greet=greet.format(key=key))
+def source_of(
+    key: str, feed: str = "pass", framer: str = "return Framer()", greet: str = GREETS, made: str = "pass"
+) -> str:
+    return GOOD.format(key=key, feed=feed, framer=framer, greet=greet.format(key=key), made=made)
 
 
 def frames(count: int) -> bytes:
@@ -152,6 +156,7 @@ def test_a_package_whose_description_is_damaged_offers_nothing(site: Path) -> No
     assert {offer.name for offer in offers(SENSORS, ())} >= {"good"}
 
 
+REFUSES = "from gaitwright.devices import SourceRefusedError; raise SourceRefusedError('Asleep', 'Shake it')"
 ROW = "self.received.rows.append({})"
 FAULTS = {
     "raises": {"feed": "raise ZeroDivisionError"},
@@ -162,6 +167,10 @@ FAULTS = {
     "counts": {"feed": "self.received.damaged = 'many'"},
     "battery": {"feed": "self.received.battery = 80.0"},
     "framer": {"framer": "raise KeyError('x')"},
+    "file": {"framer": "raise OSError('x')"},
+    "refuses": {"framer": REFUSES},
+    "made": {"made": "raise FileNotFoundError('settings')"},
+    "unmade": {"made": REFUSES},
 }
 
 
@@ -205,6 +214,7 @@ def test_a_driver_that_understands_everything_takes_no_sensor_of_ours(
 
 GREETINGS = {
     "raises": "raise ValueError('x')",
+    "file": "raise OSError('x')",
     "nothing": "return None",
     "nameless": 'return SourceInfo("{key}", "1"), SensorDetails()',
     "number": 'return SourceInfo("{key}", "1", sensors=(5,)), SensorDetails()',
@@ -222,13 +232,12 @@ def test_a_driver_whose_greeting_fails_is_named(fault: str, site: Path) -> None:
 
 
 def test_what_a_driver_refuses_itself_keeps_its_words_and_its_key_is_ours_to_give(site: Path) -> None:
-    refuses = "from gaitwright.devices import SourceRefusedError; raise SourceRefusedError('Asleep', 'Shake it')"
     pretends = 'return SourceInfo("ximu3", "9", sensors=("one",)), SensorDetails()'
     write_package(
         site,
         "strange",
         SENSORS,
-        {"asleep": source_of("asleep", greet=refuses), "false": source_of("false", greet=pretends)},
+        {"asleep": source_of("asleep", greet=REFUSES), "false": source_of("false", greet=pretends)},
     )
     asleep, false = (one.protocol for one in loaded())
     assert asleep is not None

@@ -9,9 +9,9 @@ from PySide6.QtCore import QObject, Signal
 from app.system.known_columns import keep_columns
 from app.wizard.sensors.columns_form import AXES, ColumnsReported, Meaning
 from app.wording.translation import figure_text, tr
-from core.samples import FloatArray
+from core.samples import G_M_S2, FloatArray
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS, Columns
-from devices.drivers.lines import STILL, G, LinePreview, guessed, table_of
+from devices.drivers.lines import STILL, LinePreview, guessed, table_of
 from devices.transport.ports import SerialPort
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def _stated_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
     if not SLOWEST_HZ <= rate_hz <= FASTEST_HZ:
         what = tr("This time column gives {rate} samples per second.").format(rate=figure_text(rate_hz, ".3g"))
         return what, tr("Choose another column or unit for the time."), False
-    if not STILL[0] * G < force < STILL[1] * G:
+    if not STILL[0] * G_M_S2 < force < STILL[1] * G_M_S2:
         what = tr("The acceleration is {force} m/s²; at rest it must be 9.8.")
         what = what.format(force=figure_text(force, ".3g"))
         return what, tr("Hold the sensor still, or choose other columns or another unit."), False

@@ -11,10 +11,10 @@ from scipy.spatial.transform import Rotation
 from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
-from core.gait.foot import GRAVITY_M_S2, follow
+from core.gait.foot import follow
 from core.gait.live import SETTINGS, FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import PHASES, Phase, phases_at
-from core.samples import FloatArray, ImuBlock
+from core.samples import GRAVITY_M_S2, FloatArray, ImuBlock
 from core.signal.pair import OrientedTrack
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
 from tests.core.gait.feet import foot_of

@@ -5,11 +5,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.gait.events import gait_of
-from core.gait.foot import GRAVITY_M_S2
 from core.gait.phases import PHASES, Phase, phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.strides import Reason, strides_of
-from core.samples import FloatArray, RateKind
+from core.samples import GRAVITY_M_S2, FloatArray, RateKind
 from core.signal.orientation import oriented
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import Track

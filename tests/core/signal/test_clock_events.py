@@ -1,6 +1,7 @@
 """Tests of what befell the clocks of a recording: each event where it is, and none where nothing happened."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from core.samples import FloatArray, ImuBlock
 from core.signal.clock_events import MOST_PARTS, ClockBreak, ClockEventKind, ClockView, clock_view
 from core.signal.reception import pauses_among
+from core.verdicts.gates import LIMITS
 from devices.files.formats import read_trial
 from devices.files.gathering import gather
 from devices.files.refusal import FileRefusedError
@@ -140,6 +142,13 @@ def test_every_second_sample_missing_shows_against_the_rate_that_was_set_alone()
     assert set_hz == RATE_HZ
     assert view_of(block(TIME_S, half)).events == ()
     assert view_of(block(TIME_S * 1.05), rate_hz=RATE_HZ).events == ()  # as clocks and settings are off
+
+
+def test_samples_are_sparse_where_the_verdicts_report_no_angle(monkeypatch: pytest.MonkeyPatch) -> None:
+    slow = block(TIME_S * 1.15)  # 87 % of the rate that was set
+    assert kinds(view_of(slow, rate_hz=RATE_HZ)) == ["sparse"]
+    monkeypatch.setattr("core.signal.clock_events.LIMITS", replace(LIMITS, rate_percent=(2.0, 15.0)))
+    assert view_of(slow, rate_hz=RATE_HZ).events == ()
 
 
 def restart_at(at: int, by_s: float = 8.5) -> ClockBreak:

@@ -1,6 +1,7 @@
 """Tests of how many samples were expected of each sensor, how many came, and the longest gap."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from core.body import Site
 from core.samples import BoolArray, FloatArray, ImuBlock
 from core.session import Recording, RecordingKind
 from core.signal.received import SamplesReceived, samples_received
+from core.verdicts.gates import LIMITS
 from tests.clock_files import ALL, TIME_S, without
 
 RATES: Mapping[Site, float | None] = {Site.LEFT_FOOT: 100.0, Site.LEFT_SHANK: 100.0}
@@ -30,6 +32,13 @@ def test_all_samples_are_all_samples_with_or_without_a_rate() -> None:
         counts = samples_received(recording(left_foot=ALL, left_shank=ALL), rates)
         assert counts == {Site.LEFT_FOOT: ALL_CAME, Site.LEFT_SHANK: ALL_CAME}
         assert not any(one.is_lossy for one in counts.values())
+
+
+def test_more_is_lost_than_strides_bear_where_the_verdicts_begin_to_take_care(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts = SamplesReceived(expected=1000, received=985, longest_gap_s=0.0)
+    assert counts.is_lossy
+    monkeypatch.setattr("core.signal.received.LIMITS", replace(LIMITS, lost_percent=(2.0, 5.0)))
+    assert not counts.is_lossy
 
 
 def test_a_clock_that_is_a_little_off_loses_nothing() -> None:

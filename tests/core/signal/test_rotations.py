@@ -13,6 +13,7 @@ from core.signal.rotations import (
     cross_matrix,
     joint_frame,
     matrix_from_quaternion,
+    quaternions_about_vertical,
     turn_about_vertical,
     wrap,
 )
@@ -49,6 +50,14 @@ def test_joint_frames_of_many_axes_are_those_of_each() -> None:
 def test_turning_about_the_vertical_is_a_rotation_about_z(heading: float, v: FloatArray) -> None:
     expected = Rotation.from_rotvec([0.0, 0.0, heading]).apply(v)
     np.testing.assert_allclose(turn_about_vertical(np.array(heading), v), expected, atol=1e-12)
+
+
+@given(st.floats(-7, 7), directions)
+def test_quaternions_turned_about_the_vertical_turn_vectors_so(heading: float, axis: FloatArray) -> None:
+    before = Rotation.from_rotvec(axis)
+    turned = quaternions_about_vertical(np.array([heading]), before.as_quat(scalar_first=True)[None])
+    expected = (Rotation.from_rotvec([0.0, 0.0, heading]) * before).as_matrix()
+    np.testing.assert_allclose(matrix_from_quaternion(turned)[0], expected, atol=1e-12)
 
 
 def test_matrices_of_quaternions_are_scalar_first() -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from devices.drivers.witmotion import CLOCK, DRIVER, FORCE, RATE, TIME, VERSION, G, WitFramer, WitMotion, frame, writing
+from devices.drivers.witmotion import CLOCK, DRIVER, FORCE, RATE, TIME, VERSION, WitFramer, WitMotion, frame, writing
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.witmotion import SWITCHED_ON, WitVoice
 from devices.live import SourceRefusedError
@@ -18,6 +18,7 @@ from devices.stream import ByteSource, Decoder
 from devices.transport.ports import PortInfo, SerialPort
 from tests.devices.scripted import ScriptedChannel
 
+G = 9.80665
 ALL = 0b1111
 
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from devices.clocks.arrival_clock import ArrivalClock
-from devices.drivers.witmotion import G
 from devices.drivers.witmotion_ble import DRIVER, WitBle, WitBleFramer, WitBleSource, is_wit
 from devices.emulators.bluetooth import Air
 from devices.live import SourceLostError, SourceRefusedError
@@ -22,6 +21,7 @@ from tests.devices.bumble_air import ReachedByBumble
 from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.drivers.emulated_wit_ble import EmulatedWitBle
 
+G = 9.80665
 FRAME = bytes.fromhex("5561 0008 00F8 0040 0040 00C0 0000 0000 0000 0000")  # 1 g, -1 g, 8 g; 1000, -1000, 0 deg/s
 
 

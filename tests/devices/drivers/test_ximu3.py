@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from devices.drivers.ximu3 import DRIVER, MOST_MESSAGE, VERSION, G, Ximu3, Ximu3Framer, read_file, stuffed, unstuffed
+from devices.drivers.ximu3 import DRIVER, MOST_MESSAGE, VERSION, Ximu3, Ximu3Framer, read_file, stuffed, unstuffed
 from devices.emulators.transports import Emulation, PseudoTerminal, TcpServer, Transport, UdpSender
 from devices.emulators.ximu3 import Ximu3Voice, message, text_message
 from devices.live import SourceRefusedError
@@ -19,6 +19,7 @@ from devices.transport.channels import Channel, TcpChannel, UdpChannel
 from devices.transport.ports import PortInfo, SerialPort
 from tests.devices.scripted import ScriptedChannel, free_port
 
+G = 9.80665
 INFO = SourceInfo(DRIVER, VERSION, sensors=("A",), settings={"rate_hz": 100.0})
 
 

@@ -144,7 +144,7 @@ def test_other_units_are_refused_with_their_name(tmp_path: Path) -> None:
 
 
 def test_the_last_rows_may_be_cut_short_and_decimal_signs_be_commas(tmp_path: Path) -> None:
-    rows = [[f"{0.1 * k:.1f}", "0.5", "0", "9.81", "0", "0", "0.25"] for k in range(10)]
+    rows = [[f"{0.1 * k:.1f}", "0.5", "0.25", "9.81", "0.01", "0.02", "0.25"] for k in range(100)]
     whole = moveo(tmp_path / "a.csv", rows).read_text()
     (tmp_path / "b.csv").write_text(whole.replace(",", ";").replace(".", ","))
     with (tmp_path / "b.csv").open("a") as file:

@@ -1,7 +1,9 @@
 """Tests that files that belong together come together and that nothing is lost on the way."""
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -67,6 +69,61 @@ def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
         FileRefusedError, match=r"the folder contains neither session\.toml nor a file that can be imported"
     ):
         gather([tmp_path])
+
+
+def refuse_to_open(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the system does of what belongs to somebody else; whoever is root may read everything."""
+
+    def refusing(of: str) -> Callable[..., Any]:
+        open_it = getattr(Path, of)
+
+        def attempt(path: Path, *args: Any, **kwargs: Any) -> Any:
+            if path.name == name:
+                raise PermissionError(13, "Permission denied", str(path))
+            return open_it(path, *args, **kwargs)
+
+        return attempt
+
+    for of in ("open", "iterdir"):
+        monkeypatch.setattr(Path, of, refusing(of))
+
+
+@pytest.mark.parametrize("name", ["b.csv", "more"])
+def test_what_cannot_be_read_is_refused_and_the_others_stay(
+    name: str, mixed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paths = sorted(mixed.iterdir())
+    every = gather(paths)
+    refuse_to_open(name, monkeypatch)
+    found = gather(paths)
+    is_lost = {"b.csv": "b", "more": "d"}[name]
+    assert found.trials == tuple(one for one in every.trials if one.name != is_lost)
+    assert {str(one) for one in found.refused} - {str(one) for one in every.refused} == {
+        f"{name}: the file or folder cannot be read (Permission denied). Check the permissions."
+    }
+
+
+def test_what_is_damaged_is_refused_and_the_others_stay(mixed: Path) -> None:
+    (mixed / "b2.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+    found = gather(sorted(mixed.iterdir()))
+    assert len(found.trials) == 7
+    assert "b2.h5: the file cannot be read as HDF5" in "\n".join(map(str, found.refused))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the limits of Linux")
+def test_a_link_to_what_nobody_chose_is_refused_by_the_reading_process(mixed: Path) -> None:
+    secret = mixed.parent / f"{mixed.name}-beside.csv"
+    secret.write_text(APDM)
+    folder = mixed / "more"
+    (folder / "e.csv").symlink_to(secret)
+    reader = LimitedReader()
+    try:
+        found = LimitedReading(reader, lambda: None).gather([folder])
+    finally:
+        reader.close()
+    assert [one.name for one in found.trials if one.name != "e"] == ["d"]
+    if "e" not in [one.name for one in found.trials]:  # without Landlock it is read
+        assert [one.where for one in found.refused] == ["e.csv"]
 
 
 def test_the_files_of_one_trial_are_those_of_its_name(test_data: FindData) -> None:

@@ -2,19 +2,21 @@
 
 from collections.abc import Callable
 from dataclasses import fields, replace
+from io import BufferedReader, FileIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.home.importing.table_words import stated_of
+from devices.files import table_layout
 from devices.files.answers import details_of, value_from
 from devices.files.formats import format_of, read_trial
 from devices.files.gathering import gather
 from devices.files.limited_reader import LimitedReader, LimitedReading
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import NO_CHOICES, NONE, TableChoices, TablePreview, column_named
-from devices.files.table_layout import fingerprint_of
+from devices.files.table_layout import HEAD_BYTES, fingerprint_of
 from devices.files.table_preview import preview_of
 from tests.devices.files.test_public_layouts import (
     LEFT,
@@ -203,6 +205,39 @@ def test_only_the_beginning_of_a_large_file_is_read(tmp_path: Path, monkeypatch:
     preview = preview_of(table(tmp_path / "a.csv"), STATED)
     assert preview.is_cut
     assert 1.0 < preview.sensors[0].length_s < 5.0
+
+
+def test_a_utf_16_table_that_is_read_whole_is_not_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = table(tmp_path / "a.csv")
+    text = path.read_text()
+    path.write_text(text, encoding="utf-16")
+    monkeypatch.setattr("devices.files.table_preview.PREVIEW_BYTES", len(text))
+    preview = preview_of(path, STATED)
+    assert not preview.is_cut
+    assert len(text) < path.stat().st_size
+    assert preview.sensors[0].length_s == pytest.approx(np.ptp(LEFT.time_s))
+    monkeypatch.setattr("devices.files.table_preview.PREVIEW_BYTES", len(text) - 1)
+    assert preview_of(path, STATED).is_cut
+
+
+def test_of_a_long_table_separated_by_blanks_only_the_head_is_read_for_its_layout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = table(tmp_path / "a.txt", by=" ")
+    short = fingerprint_of(path)
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([lines[0], *lines[1:] * 50]))
+    read: list[int] = []
+
+    class CountedFile(BufferedReader):
+        def read(self, size: int | None = -1, /) -> bytes:
+            read.append(len(found := super().read(size)))
+            return found
+
+    monkeypatch.setattr(table_layout, "open_text", lambda path, _encoding: CountedFile(FileIO(path)))
+    assert path.stat().st_size > 8 * HEAD_BYTES
+    assert fingerprint_of(path) == short
+    assert sum(read) <= 2 * (HEAD_BYTES + 1)  # as it is, and with its blanks squeezed
 
 
 def test_a_fingerprint_is_of_the_columns_alone(tmp_path: Path) -> None:

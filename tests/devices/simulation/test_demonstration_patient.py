@@ -115,6 +115,16 @@ def test_every_test_is_performed_from_standing_to_standing(
     assert np.allclose(step_s, 1.0 / RATE_HZ, atol=2e-3), "the sensors go on evenly from standing to test and back"
 
 
+def test_the_walk_between_two_tapes_is_as_long_as_the_course_that_was_entered(patient: Watched) -> None:
+    walked_m = []
+    for course_m in (4.0, None, 20.0):
+        patient.perform(PlannedTest(TimedProtocol.TEN_METRES, course_m=course_m))
+        foot = patient.received(40.0)[LEFT_FOOT]
+        moving_s = foot.time_s[np.linalg.norm(foot.gyr_rad_s, axis=1) > 3.0]
+        walked_m.append(patient.course_speed_m_s * np.ptp(moving_s))
+    np.testing.assert_allclose(walked_m, [9.0, 15.0, 25.0], atol=2.0)
+
+
 def test_attempts_differ(patient: Watched) -> None:
     found = []
     for _ in range(2):
