@@ -18,6 +18,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.summary.trend_lines import TrendValue
 from app.wording.timed_tests import name_of_test
+from core.alignment import AlignmentChange
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.parameters import KNEE
@@ -111,6 +112,19 @@ def test_the_page_is_in_the_report_where_visits_were_given(demo: ReportRequest) 
     without, with_it = (report_data(replace(demo, course=tuple(course))) for course in ((), seen))
     assert len(with_it["pages"]) == len(without["pages"]) + 1
     assert with_it["pages"][-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
+
+
+def test_the_page_of_a_return_to_an_alignment_is_that_alignments(demo: ReportRequest) -> None:
+    again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
+    session = demo.visit.session
+    recordings = tuple(
+        replace(one, condition="Alignment A again", alignment=again) if one.name == demo.shown else one
+        for one in session.recordings
+    )
+    visit = AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
+    seen = visits(walk(31, condition="Alignment A"), walk(52, condition="Alignment A"))
+    pages = report_data(replace(demo, visit=visit, course=tuple(seen)))["pages"]
+    assert pages[-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
 
 
 @pytest.mark.parametrize("value", [0.7, 31.0, 60.0])
