@@ -126,7 +126,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
     fitting = fitting_of(session, request.visit.analysis)
-    of_walk = pages_of_walk(facts)
+    of_walk, condition = pages_of_walk(facts), facts.condition
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts, comparison),
@@ -134,7 +134,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         *([fitting_page(fitting, facts)] if fitting is not None else []),
         *([comparison_page(comparison, facts, has_fitting=fitting is not None)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
-        *([course] if request.has_course_page and (course := trend_page(request.course, facts.condition, facts)) else []),
+        *([course] if request.has_course_page and (course := trend_page(request.course, condition, facts)) else []),
     ]
     title = ", ".join(
         filter(

@@ -232,7 +232,9 @@ def test_a_test_after_the_return_to_an_alignment_is_compared_with_that_alignment
         for one in session.recordings
     )
     course = tuple(
-        CourseVisit(UUID(int=number), datetime.date(2026, 9 + number, 2), with_tests((TimedProtocol.TEN_METRES, time_s)))
+        CourseVisit(
+            UUID(int=number), datetime.date(2026, 9 + number, 2), with_tests((TimedProtocol.TEN_METRES, time_s))
+        )
         for number, time_s in enumerate((14.0, 10.0))
     )
     of = AnalysedVisit(replace(session, recordings=recordings), analysis)
