@@ -83,7 +83,7 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
         )
     words = stated.format(
         day=_day_of(earlier.session.started),
-        condition=_condition_typed(visit.recording(request.shown).condition),
+        condition=_condition_typed(visit.recording(request.shown).returned_to),
         others=", ".join(map(_condition_typed, before)),
     )
     return [heading(tr("Comparison of visits")), paragraph(words)]
