@@ -139,7 +139,7 @@ def test_an_earlier_visit_without_the_alignment_that_was_returned_to_is_stated_w
     )
     visit = AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
     (_, paragraph) = not_compared_page(replace(demo, visit=visit, earlier=demo.visit))
-    assert "has no walk in this condition (\u2068Alignment A\u2069)" in paragraph["said"]
+    assert "has no walk in this condition (\u2068Alignment A\u2069)" in str(paragraph["said"])
 
 
 @pytest.mark.parametrize("value", [0.7, 31.0, 60.0])
