@@ -5,8 +5,8 @@ not reported has no value and its reason in place of it; nothing is ever called 
 what made the figures is a Device, and a DiagnosticReport holds them together. Simulated figures carry the label that
 HL7 gives to test data.
 
-Posted again, figures replace what they were: each is looked for by its identifier. A patient whom the server knows by
-the code is left as it is.
+Posted again, figures and prostheses replace what they were: each is looked for by its identifier. A patient whom
+the server knows by the code is left as it is.
 """
 
 import json
