@@ -70,7 +70,7 @@ def example_pages() -> Mapping[str, str]:
     }
     firsts = (f"- [{title_of(name)}]({name}.md): {_first_sentence(EXAMPLES / f'{name}.py')}" for name in pages)
     head = (
-        "# Examples\n\nA script for each of sixteen tasks. They use public names alone, run as their pages say, and "
+        "# Examples\n\nA script for each task. They use public names alone, run as their pages say, and "
         "are run with every test of the project.\n\n"
     )
     return pages | {"index": head + "\n".join(firsts) + "\n"}

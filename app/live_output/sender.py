@@ -150,6 +150,8 @@ class Sender:
             self._lsl_offset_s = offset_s + self.lsl.now_s() - time.monotonic()
         self._sent, self._latest_s = {}, {}
         self._dropped_before = dropped_before
+        if self._server is not None:
+            self._server.closed, self._server.latest_closed = 0, ""
         self.status = replace(NO_WALK, walk=RUNNING, simulated=self.status.simulated)
         self._state()
 

@@ -22,8 +22,13 @@ def install_words(extra: str) -> str:
     return tr("Not installed on this computer. Install gaitwright[{extra}].").format(extra=extra)
 
 
-def output_words(output: LiveOutput) -> str:
-    """Say for whoever is recording what is sent, or why nothing is; empty where nothing was switched on."""
+def output_words(output: LiveOutput, *, is_in_memory: bool = False) -> str:
+    """Say for whoever is recording what is sent, or why nothing is; empty where nothing was switched on.
+
+    `is_in_memory`: the sensors store the walk and send nothing of it.
+    """
+    if is_in_memory and output.is_on:
+        return tr("Live output: nothing is sent while the sensors store the walk.")
     on = ["LSL"] if output.has_lsl else []
     if output.port:
         on.append(tr("WebSocket ({count} connected)").format(count=output.status.clients))

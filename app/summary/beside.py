@@ -13,11 +13,8 @@ from app.wording.recordings import shown_names
 from app.wording.translation import tr
 from core.body import JointKind
 from core.goals import NO_GOALS, AgreedGoals
-from core.parameters import BY_COLUMN, QuantityClass
 from core.results import Analysis
 from core.session import Recording
-
-MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
 
 def walks_alone(
@@ -50,22 +47,6 @@ def beside_visit(
             pair = before, replace(shown, visit=found.parts[-1].visit)
             return Comparison(Contrast.VISITS, pair, is_simulated=is_simulated)
     return None
-
-
-def changes_on_curves(found: Comparison) -> list[Deviation]:
-    """Of each kind of joint the movement that differs by most errors from what is beside it, on the walk shown."""
-    rows = sorted((row for row in found.rows if row.exceeds), key=lambda row: -row.difference.ratio)
-    marked = []
-    for kind in JointKind:
-        row = next((row for row in rows if row.measure.kind == kind and can_be_marked(row)), None)
-        if row is not None:
-            marked.append(change_on_curve(row, row.side.letter, row.against.name))
-    return marked
-
-
-def can_be_marked(row: Compared) -> bool:
-    """Whether a measure is a movement between two points of a curve."""
-    return bool(row.measure.kind) and BY_COLUMN[row.measure.column].rests_on in MARKED
 
 
 def change_on_curve(row: Compared, called: str, other: str) -> Deviation:

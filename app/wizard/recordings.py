@@ -80,7 +80,6 @@ class SessionRecordings(QObject):
         self._trouble: Trouble | None = None  # of the latest
         self._is_without_row = False
         self._acquisition: Acquisition | None = None
-        self._lost_before: Mapping[str, int] = {}
         self._counts_before: Mapping[str, SensorCounts] = {}
         self._must_keep = True
         self._strides: Mapping[Side, int] | None = None
@@ -241,7 +240,7 @@ class SessionRecordings(QObject):
             self._phase = RecordingPhase.BEGINNING
         self._must_keep, self._strides = True, None
         self._latest, self._trouble, self._is_without_row = None, None, False
-        self._acquisition, self._lost_before = acquisition, acquisition.lost()
+        self._acquisition = acquisition
         self._counts_before = {name: one.counts for name, one in acquisition.status().items()}
         session_id = self.session.id
         begun = self._beginning = Future[Recorder]()
@@ -336,7 +335,8 @@ class SessionRecordings(QObject):
         if self._acquisition is None:
             return 0
         now = self._acquisition.lost()
-        return sum(max(count - self._lost_before.get(name, 0), 0) for name, count in now.items())
+        before = self._counts_before
+        return sum(max(count - before.get(name, SensorCounts()).lost, 0) for name, count in now.items())
 
     def received_so_far(self) -> dict[str, tuple[int, int]]:
         """Samples received and lost since the recording that goes on began, by sensor; of those whose loss shows."""

@@ -1,10 +1,11 @@
 """What tests of the screen get: a watchdog over its thread, a long language, a theme, settings, the results."""
 
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QEvent, QSettings
+from PySide6.QtCore import QEvent, QLockFile, QSettings
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -65,3 +66,13 @@ def result_page(qtbot: QtBot) -> ResultPage:
     page = ResultPage()
     qtbot.addWidget(page)
     return page
+
+
+@pytest.fixture
+def alone_with_lsl() -> Iterator[None]:
+    """No other test of this computer streams: whoever asks for streams by name gets those of every process."""
+    lock = QLockFile(str(Path(tempfile.gettempdir(), "gaitwright-tests-lsl.lock")))
+    lock.setStaleLockTime(0)  # as long as its process lives
+    lock.lock()
+    yield
+    lock.unlock()

@@ -10,6 +10,7 @@ from app.wording.alignment import as_entered
 from app.wording.recordings import LETTERS, label_again, shown_names
 from core.alignment import (
     FIGURES,
+    MOST_TEXT,
     AlignmentChange,
     NetChange,
     PartChange,
@@ -67,6 +68,7 @@ class ChangeEntry:
         self.is_program = False
         self.known = KnownStates()
         self.has_knee = True
+        self.times_loaded = 0
         self._figures: dict[ProsthesisPart, dict[str, float]] = {}
         self._texts: dict[ProsthesisPart, str] = {}
         self._names: dict[ProsthesisPart, dict[str, str]] = {}
@@ -156,13 +158,17 @@ class ChangeEntry:
         return {"setting": name, "setting_before": before, "setting_value": after}
 
     def load(self, parts: Sequence[PartChange]) -> None:
-        """Enter all of a change again; empty: nothing."""
-        self._figures = {one.part: {name: getattr(one, name) for name in FIGURES} for one in parts}
-        self._texts = {one.part: one.text for one in parts}
-        self._names = {one.part: {name: getattr(one, name) for name in NAMES} for one in parts}
-        self._numbers = {
-            one.part: {name: value for name in NUMBERS if (value := getattr(one, name)) is not None} for one in parts
-        }
+        """Enter all of a change again, what is of one part together; empty: nothing."""
+        self._figures, self._texts, self._names, self._numbers = {}, {}, {}, {}
+        self.times_loaded += 1
+        for one in parts:
+            figures = self._figures.setdefault(one.part, dict(NOTHING_REPORTED))
+            figures |= {name: value + getattr(one, name) for name, value in figures.items()}
+            texts = filter(None, [self._texts.get(one.part, ""), one.text])
+            self._texts[one.part] = "; ".join(texts)[:MOST_TEXT]
+            names, numbers = self._names.setdefault(one.part, {}), self._numbers.setdefault(one.part, {})
+            names |= {name: value for name in NAMES if (value := getattr(one, name))}
+            numbers |= {name: value for name in NUMBERS if (value := getattr(one, name)) is not None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,8 +204,9 @@ class AlignmentChain:
     def again(self) -> tuple[str, AlignmentChange]:
         """What the next walk is called after the return, and what was undone before it."""
         back = changed_between(self.changes, self.latest, self.base) or ()
-        label = label_again(self.first, list(self.changes))
-        return label, AlignmentChange(self.latest, as_entered(back), returns_to=self.first)
+        change = self.changes.get(self.base)
+        to = (change.returns_to if change is not None else "") or self.base
+        return label_again(to, list(self.changes)), AlignmentChange(self.latest, as_entered(back), returns_to=to)
 
     @property
     def again_letter(self) -> str:

@@ -49,7 +49,9 @@ def reported_row(found: Comparison, prosthetic: Side) -> Compared | None:
     if is_provisional(found, prosthetic):
         return None
     own = [row for row in found.rows if may_be_stated(row) and row.side is prosthetic]
-    beyond = [row for row in own if row.exceeds] or [row for row in _fitted(found, prosthetic) if row.exceeds]
+    beyond = [row for row in own if row.exceeds] or [
+        row for row in _fitted(found, prosthetic) if row.exceeds and may_be_stated(row)
+    ]
     worth = [row for row in beyond if row.difference.is_worth_a_sentence]
     return max(_without_family(worth or beyond or own), key=lambda row: row.difference.ratio, default=None)
 

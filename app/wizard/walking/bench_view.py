@@ -171,8 +171,8 @@ class BenchView(QWidget):
         self._cards = QGridLayout()
         scaled(self._cards.setSpacing, BETWEEN)
         self._cards.setRowStretch(1, 1)
-        said = (self._mark, self.first, self.then, self.notes)
-        for part in (*said, self.tabs, self.alignments, self._curves, self.differences):
+        spoken = (self._mark, self.first, self.then, self.notes)
+        for part in (*spoken, self.tabs, self.alignments, self._curves, self.differences):
             part.setParent(self)  # in the order of reading; what is shown without one is a window
         lay_out(QVBoxLayout(self), head, (self._cards, 1), margins=0, spacing=12)
 

@@ -9,8 +9,9 @@ from app.theme.current import scaled
 from app.widgets.card import Card
 from app.widgets.field import NumberField
 from app.widgets.lay_out import lay_out
+from app.widgets.leaving_keys import LeavingKeys
 from app.widgets.text import Text
-from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M, LeavingKeys
+from app.wizard.walking.timed_chooser import FIELD_WIDTH, LONGEST_M, SHORTEST_M
 from app.wording.timed_tests import course_label
 from app.wording.translation import tr
 from core.timed.protocols import DEFINITIONS, PlannedTest, course_of, with_course
@@ -54,7 +55,8 @@ class CourseEntry(Card):
     def show_test(self, planned: PlannedTest) -> None:
         """Show what was entered for a test that has a course, and nothing for others."""
         if planned == self._shown:
-            return  # what is being typed stays
+            return
+        is_same = self._shown is not None and self._shown.protocol is planned.protocol
         self._shown = planned
         label = course_label(planned.protocol)
         self.setVisible(bool(label))
@@ -63,7 +65,8 @@ class CourseEntry(Card):
         self._counted.setVisible(_has_laps(planned))
         values = (course_of(planned), planned.typed_laps, planned.rest_m)
         for field, value in zip(self.fields, values, strict=True):
-            field.set_value(value)
+            if not (is_same and field.line_edit.hasFocus()):  # what is being typed stays
+                field.set_value(value)
 
     def _on_committed(self) -> None:
         if self.planned != self._shown and not any(field.is_wrong for field in self.fields):

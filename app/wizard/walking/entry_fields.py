@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QGridLayout, QWidget
 from app.theme.current import scaled
 from app.widgets.choice import Choice
 from app.widgets.field import Field, NumberField
+from app.widgets.leaving_keys import LeavingKeys
 from app.widgets.text import Text
 from app.wizard.walking.bench import NAMES, NUMBERS, ChangeEntry, EntryTopic
 from app.wizard.walking.stepper import Stepper
@@ -18,7 +19,6 @@ from app.wording.translation import figure_text, tr
 from core.alignment import FIGURES, MOST_NAME, MOST_SETTING, MOST_TEXT
 
 DECIMALS = 2  # of a setting
-ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 PLACES = {  # row, column and columns of the chooser, what it asks for, and the line below; by compact and program
     (False, False): ((0, 0, 2), (1, 0, 1), (1, 1, 1), (2, 0, 1), (2, 1, 1), (3, 0, 2), (4, 0, 2)),
     (False, True): ((0, 0, 2), (1, 0, 1), (1, 1, 1), (2, 0, 2), (3, 0, 1), (3, 1, 1), (4, 0, 2)),
@@ -32,12 +32,13 @@ class EntryFields(QWidget):
     """Writes into `entry` and shows what it holds. The chooser decides what is entered: position, or program."""
 
     reported = Signal()  # something was entered
-    left = Signal()  # by Enter: what was typed is done
+    left = Signal()  # by Enter or Esc: what was typed is done
 
     def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()
         self._entry, self._is_compact = entry, False
         self.parts = Choice(tr("Part"))
+        self._shown = entry.part, entry.times_loaded
         self._topics: list[EntryTopic] = []
         self._offer()
         self.steppers = {name: Stepper() for name in FIGURES}
@@ -104,25 +105,22 @@ class EntryFields(QWidget):
         self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Take Enter, which would press the filled button, and the arrows that a field of numbers has no use for."""
-        if event.type() is not QEvent.Type.KeyPress or not isinstance(event, QKeyEvent):
+        """Take the arrows, which step a number here."""
+        if event.type() is not QEvent.Type.KeyPress or not isinstance(event, QKeyEvent) or event.key() not in BY_ONE:
             return False
-        number = next((name for name, field in self.numbers.items() if field.line_edit is watched), "")
-        if event.key() in ENTER:
-            self.left.emit()
-        elif number and event.key() in BY_ONE:
-            self._step_number(number, BY_ONE[Qt.Key(event.key())])
-        else:
-            return False
+        number = next(name for name, field in self.numbers.items() if field.line_edit is watched)
+        self._step_number(number, BY_ONE[Qt.Key(event.key())])
         return True
 
     def _show_switched(self) -> None:
         entry = self._entry
+        shown = entry.part, entry.times_loaded
         for name, field in self.names.items():
             field.set_text(entry.name(name))
         for name, number in self.numbers.items():
-            if number.value != entry.number(name):  # else what is being typed would be lost
+            if number.value != entry.number(name) or self._shown != shown:  # else what is no number yet stays
                 number.set_value(entry.number(name))
+        self._shown = shown
         known = entry.known_setting
         self.program_before.line_edit.setPlaceholderText(entry.known_program)
         self.setting_before.line_edit.setPlaceholderText("" if known is None else setting_text(known))
@@ -135,7 +133,9 @@ class EntryFields(QWidget):
         for field in (*self.names.values(), *self.numbers.values()):
             field.edited.connect(self._on_switched)
         for typed in (self.words, *self.names.values(), *self.numbers.values()):
-            typed.line_edit.installEventFilter(self)
+            LeavingKeys(typed).left.connect(self.left)
+        for number in self.numbers.values():
+            number.line_edit.installEventFilter(self)
 
     def _offer(self) -> None:
         """Fill the chooser with what can be entered."""

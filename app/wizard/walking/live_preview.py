@@ -63,6 +63,7 @@ class LivePreview(QObject):
         self._is_ankle_asked = self._are_hips_asked = False
         if self._estimator is not None:
             self._estimator.count_from(began_s)
+            self._send_from(self._estimator)
         if (acquisition := self._visit.sensors.acquisition) is not None and not self._visit.sensors.are_in_memory:
             live_output.begin_walk(began_s, acquisition.now_s)
 
@@ -116,12 +117,16 @@ class LivePreview(QObject):
         elif walk is not None:
             estimator.count_from(walk.began_s)
         self._estimator = estimator
-        estimator.on_chunk = live_output.take if live_output.is_on else None  # settings need another page
+        self._send_from(estimator)
         sides = {site.leg_side for site in self._visit.sensors.site_of.values() if site.segment is Segment.FOOT}
         feet = tuple(side for side in Side if side in sides)
         live_output.open_streams(LiveStreams(estimator.rates_hz, feet, self._visit.is_simulated))
         self.renewed.emit(estimator)
         acquisition.set_estimator(estimator)
+
+    def _send_from(self, estimator: WalkingEstimator) -> None:
+        """Hand on what it finds, if it is asked for: the settings may be changed between two walks."""
+        estimator.on_chunk = live_output.take if live_output.is_on else None
 
     def _ask(self) -> None:
         """Look at the walk once for the ankles' axes, and once more for hips that nothing has shown."""

@@ -190,11 +190,10 @@ class WalkingPage(QWidget):
             self.timed_result.show_state(state)
         self._arrange()
 
-    def enter_course(self) -> bool:
-        """Lead to the length of the test's course; False where the test has none."""
+    def enter_course(self) -> None:
+        """Lead to the length of the test's course, if it has one."""
         if self.next.course.isVisible():
             self.next.course.take_focus()
-        return self.next.course.isVisible()
 
     def show_memory(self, shown: ProgressShown | None) -> None:
         """Show what is done with the sensors' memories in the place of the curves; None: they stand there."""

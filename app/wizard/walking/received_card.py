@@ -39,9 +39,9 @@ class ReceivedCard(Card):
         self.title = Text(tr("Samples were lost"), weight=MEDIUM, wraps=True)
         self.then = Text(
             tr(
-                "Strides with longer gaps are excluded. Repeat the recording while the patient is here if too few "
-                "remain."
-            ),
+                "Strides with gaps over {gap} s are excluded. Repeat the recording while the patient is here if too "
+                "few remain."
+            ).format(gap=figure_text(MAX_REPORTED_GAP_S, ".2f")),
             tone="ink2",
             wraps=True,
         )

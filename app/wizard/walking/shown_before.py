@@ -14,7 +14,10 @@ Figures = dict[tuple[str, Side], str]
 
 
 class ShownBefore:
-    """Keeps the pair shown last, and of every pair the figures shown last."""
+    """Keeps the letters of the pair shown last, and of every pair of walks the figures shown last.
+
+    A walk that is repeated in the place of an excluded one has its letter, and other figures.
+    """
 
     def __init__(self) -> None:
         self._pair: Pair | None = None
@@ -34,8 +37,9 @@ class ShownBefore:
             self._replaced, self._recalculated = self._pair, ""
         self._pair = pair
         figures = _figures_of(found, prosthetic)
-        self._recalculated = _what_changed(self._figures.get(pair, {}), figures) or self._recalculated
-        self._figures[pair] = figures
+        walks = found.parts[1].walks[0].name, found.against.walks[0].name
+        self._recalculated = _what_changed(self._figures.get(walks, {}), figures) or self._recalculated
+        self._figures[walks] = figures
         return " ".join(filter(None, [self._pair_in_words(pair), self._recalculated]))
 
     def _pair_in_words(self, pair: Pair) -> str:

@@ -361,7 +361,7 @@ class WalkingStep(Step):
             sounds.play(Sound.LOSS)
             for site in news:
                 recordings.mark(f"{site} silent")
-        self.page.show_output(output_words(live_output))
+        self.page.show_output(output_words(live_output, is_in_memory=sensors.are_in_memory))
         message = self._notice.message(self._preview.shown)
         if message == NOTHING and recordings.is_recording and sensors.acquisition is not None:
             self.page.show_message(*no_foot_message(sensors.sensor_at), is_caution=False)

@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QEvent, QObject, Qt, Signal
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme.current import scaled
 from app.widgets.choice import Choice
-from app.widgets.field import Field, NumberField
+from app.widgets.field import NumberField
 from app.widgets.key_cap import KeyCap
 from app.widgets.lay_out import lay_out
+from app.widgets.leaving_keys import LeavingKeys
 from app.widgets.text import Text
 from app.wording.timed_tests import course_label, name_of_test
 from app.wording.translation import tr, within_sentence
@@ -19,7 +19,6 @@ from core.timed.protocols import PlannedTest, TimedProtocol, course_of
 LEAST, MOST = 120, 340  # px of the box
 SHORTEST_M, LONGEST_M = 1.0, 200.0
 FIELD_WIDTH = 104
-LEAVING = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Escape)
 
 
 class TimedChooser(Choice):
@@ -47,28 +46,6 @@ class TimedChooser(Choice):
 
     def _on_activated(self, _index: int) -> None:
         self.chosen.emit(self.currentData())
-
-
-class LeavingKeys(QObject):
-    """Lets Enter and Esc leave a field: Enter is the primary button's elsewhere, Esc the window's. `left`: by them."""
-
-    left = Signal()
-
-    def __init__(self, field: Field) -> None:
-        super().__init__(field)
-        self._line = field.line_edit
-        self._line.installEventFilter(self)
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if isinstance(event, QKeyEvent) and event.key() in LEAVING and not event.modifiers():
-            if event.type() is QEvent.Type.ShortcutOverride:
-                event.accept()
-                return True
-            if event.type() is QEvent.Type.KeyPress:
-                self._line.clearFocus()
-                self.left.emit()
-                return True
-        return super().eventFilter(watched, event)
 
 
 class CourseField(QWidget):
@@ -111,7 +88,8 @@ class CourseField(QWidget):
         self._caption.setText(label)
         self.field.set_label(tr("Next test, {length}").format(length=within_sentence(label)))  # not the one before
         protocol = None if planned is None else planned.protocol
-        if planned is not None and (protocol is not self._protocol or not self.field.line_edit.hasFocus()):
+        is_in_hand = protocol is self._protocol and (self.field.line_edit.hasFocus() or self.is_wrong)
+        if planned is not None and not is_in_hand:
             self.field.set_value(course_of(planned))
         self._protocol = protocol
 

@@ -3,8 +3,9 @@
 from typing import TYPE_CHECKING
 
 from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.timed_chooser import LONGEST_M, SHORTEST_M
 from app.wizard.walking.timed_control import TimedControl
-from app.wording.translation import tr
+from app.wording.translation import figure_text, tr
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -43,5 +44,6 @@ class WalkStart:
         if not missing and self._visit.sensors.are_in_memory and self._timed.planned is not None:
             return tr("Timed tests need live data. Choose no test, or record walks live.")
         if not missing and self._timed.is_course_wrong:
-            return tr("Enter the length of the course in metres, 1 to 200.")
+            asked = tr("Enter the length of the course in metres, {shortest} to {longest}.")
+            return asked.format(shortest=figure_text(SHORTEST_M, "g"), longest=figure_text(LONGEST_M, "g"))
         return missing

@@ -31,7 +31,7 @@ COUNT = 1000
 
 
 @pytest.fixture
-def on(output: LiveOutput) -> LiveOutput:
+def on(alone_with_lsl: None, output: LiveOutput) -> LiveOutput:
     output.set_up(OutputSettings(has_lsl=True))
     refused = output.trouble.get("lsl")
     if refused is not None and refused.other:  # another test of this process has searched a network

@@ -54,6 +54,12 @@ def test_the_watch_on_sockets_sees_those_that_are_opened(output: LiveOutput, ope
     assert threads() == []
 
 
+def test_while_sensors_store_the_walk_it_states_that_nothing_is_sent(output: LiveOutput) -> None:
+    assert output_words(output, is_in_memory=True) == ""
+    output.set_up(OutputSettings(has_websocket=True, port=0))
+    assert output_words(output, is_in_memory=True) == ("Live output: nothing is sent while the sensors store the walk.")
+
+
 def test_without_the_library_the_websocket_names_what_to_install(
     output: LiveOutput, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -235,6 +235,12 @@ def test_a_client_that_never_reads_is_closed_and_named_and_the_others_miss_nothi
         assert numbers == list(range(0, first, 400))
         assert count == 1
         assert named.startswith("client ")
+        on.end_walk()
+        on.begin_walk(BEGAN_S, BEGAN_S)
+        latest = received(good, until="running")[-1]
+        while latest["walk"] != "running" or latest["samples"]:  # those of the walk before
+            latest = received(good, until="running")[-1]
+        assert (latest["closed"], latest["latest_closed"]) == (0, "")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="file descriptors are counted as POSIX has them")

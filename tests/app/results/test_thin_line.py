@@ -14,11 +14,12 @@ from pytestqt.qtbot import QtBot
 from app.results.result_page import ResultPage
 from app.results.thin_line import ThinLine
 from app.results.tools_row import STRIDES
-from app.summary.beside import beside_visit, beside_walk, changes_on_curves, walks_alone
+from app.summary.beside import beside_visit, beside_walk, change_on_curve, walks_alone
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
+from app.wizard.walking.bench_rows import marked_rows
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
@@ -332,8 +333,9 @@ def test_changes_on_the_curves_of_a_bench_are_of_the_movement_that_differs_most(
     analysis: Analysis, session: Session
 ) -> None:
     alone = walks_alone(analysis, session.recordings)
-    marked = changes_on_curves(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True))
-    assert marked
+    rows = marked_rows(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True), Side.LEFT)
+    assert rows
+    marked = [change_on_curve(row, row.side.letter, row.against.name) for row in rows.values()]
     assert all(one.more.endswith("than B AFO") for one in marked)
     same = beside_walk(alone["walk 1"], replace(alone["walk 1"], name="again"), is_simulated=True)
-    assert changes_on_curves(same) == []
+    assert marked_rows(same, Side.LEFT) == {}

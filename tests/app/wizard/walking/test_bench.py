@@ -329,6 +329,20 @@ def test_a_second_return_is_a_condition_of_its_own() -> None:
     assert dict(back.letters)["Alignment A again"] == "A2"
 
 
+def test_put_back_to_another_than_the_first_the_next_walk_is_that_one_again() -> None:
+    assert chain_of(WALKED, "Alignment B").again == (
+        "Alignment B again",
+        AlignmentChange("Alignment C", (PartChange(PYLON, height_mm=1.0),), returns_to="Alignment B"),
+    )
+    returned = (
+        *WALKED,
+        recording(4, "A again", AGAIN),
+        recording(5, "D", AlignmentChange("Alignment A again", OF_C.parts)),
+    )
+    label, change = chain_of(returned, "Alignment A again").again
+    assert (label, change.returns_to) == ("Alignment A again 2", "Alignment A")
+
+
 def test_the_chain_begins_with_its_own_first_and_not_with_another_condition_walked_before() -> None:
     barefoot = replace(recording(9, "A"), condition="Barefoot")
     chain = chain_of((barefoot, *WALKED), "")

@@ -25,7 +25,7 @@ from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
 def part(letter: str, joint: Joint | None = None, axis_sd_deg: float = 2.0, **changes: Any) -> Part:
     found = calibrations(joint, axis_sd_rad=np.deg2rad(axis_sd_deg)) if joint is not None else calibrations()
-    return Part(letter, f"Alignment {letter}", (judged_walk(walk(**changes), found),), found)
+    return Part(letter, f"Alignment {letter}", (judged_walk(walk(name=f"walk {letter}", **changes), found),), found)
 
 
 def pair(shown: Part, base: Part) -> Comparison:
@@ -59,6 +59,13 @@ def test_a_figure_that_a_further_walk_changes_is_stated_with_what_it_was() -> No
     assert shown.note(pair(more, A), Side.LEFT) == stated
     shown.chosen()
     assert shown.note(pair(more, A), Side.LEFT) == ""
+
+
+def test_a_walk_in_the_place_of_an_excluded_one_recalculates_nothing() -> None:
+    shown = ShownBefore()
+    shown.note(pair(B, A), Side.LEFT)
+    repeated = replace(B, walks=(judged_walk(walk(name="walk B again", left=bent(75.0)), calibrations()),))
+    assert shown.note(pair(repeated, A), Side.LEFT) == ""
 
 
 NOT_MEASURED = "The change itself is not measured."

@@ -76,6 +76,24 @@ def test_what_is_no_figure_and_what_was_there_before_are_no_entry(qtbot: QtBot, 
         write(entry.length, "0")
 
 
+def test_what_is_being_typed_stays_where_the_test_is_found_again(qtbot: QtBot, entry: CourseEntry) -> None:
+    field = CourseField()
+    for one in (entry, field):
+        qtbot.addWidget(one)
+    entry.show_test(PlannedTest(TWO, lap_m=20.0))
+    field.show()
+    entry.length.line_edit.setFocus()
+    entry.length.line_edit.setText("2")
+    entry.show_test(PlannedTest(TWO, lap_m=20.0, typed_laps=6))
+    assert (entry.length.text, entry.laps.text) == ("2", "6")
+    field.show_course(PlannedTest(UP))
+    write(field.field, "0.2")  # too short, and the field is left
+    field.show_course(PlannedTest(UP))
+    assert (field.field.text, field.is_wrong) == ("0.2", True)
+    field.show_course(PlannedTest(TEN))
+    assert (field.field.text, field.is_wrong) == ("10", False)
+
+
 def test_the_tests_own_length_is_no_entry_of_another(entry: CourseEntry) -> None:
     entry.show_test(PlannedTest(UP, course_m=6.0))
     write(entry.length, "3")

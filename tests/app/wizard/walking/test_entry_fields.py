@@ -230,3 +230,46 @@ def test_no_word_of_a_program_is_cut_in_a_language_as_long_as_german(
 
 def test_each_figure_is_explained_under_the_mouse(fields: EntryFields) -> None:
     assert fields.steppers["turns"].toolTip() == "Screw turns: plus, minus or an arrow changes it by 0.125."
+
+
+def test_what_is_no_number_stays_while_the_change_is_entered_and_goes_with_it(
+    fields: EntryFields, entry: ChangeEntry
+) -> None:
+    chosen(fields, EntryTopic(KNEE, is_program=True))
+    QTest.keyClicks(fields.setting_value.line_edit, "fifty")
+    QTest.keyClicks(fields.setting.line_edit, "Stance")
+    assert fields.setting_value.text == "fifty"
+    entry.load(())  # the walk has begun: the next change is another
+    fields.show_entry()
+    assert fields.setting_value.text == ""
+    QTest.keyClicks(fields.setting_value.line_edit, "fifty")
+    chosen(fields, EntryTopic(FOOT, is_program=True))
+    assert fields.setting_value.text == ""
+
+
+def test_esc_in_a_field_is_done_with_it(qtbot: QtBot, fields: EntryFields) -> None:
+    for field in (fields.words, fields.program, fields.setting_value):
+        with qtbot.waitSignal(fields.left, timeout=1000):
+            QTest.keyClick(field.line_edit, Key.Key_Escape)
+
+
+def test_two_entries_of_one_part_are_one_change(entry: ChangeEntry) -> None:
+    entry.load(
+        [
+            PartChange(PYLON, height_mm=3.0, text="spacer"),
+            PartChange(PYLON, height_mm=-1.0, turns=0.5, text="screw"),
+            TO_2,
+            TO_50,
+        ]
+    )
+    assert set(entry.parts) == {
+        PartChange(PYLON, height_mm=2.0, turns=0.5, text="spacer; screw"),
+        PartChange(
+            KNEE,
+            program_before="Walk 1",
+            program="Walk 2",
+            setting="Swing flexion",
+            setting_before=45.0,
+            setting_value=50.0,
+        ),
+    }

@@ -34,7 +34,9 @@ PLANTED = Patient(code="DEMO-QXZVQ", birth_year=1957, sex="female", prosthetic_s
 
 
 @pytest.fixture
-def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: PatientTime) -> Iterator[WalkingStep]:
+def step(
+    qtbot: QtBot, alone_with_lsl: None, visit: Visit, worn: dict[str, Site], patient_time: PatientTime
+) -> Iterator[WalkingStep]:
     begin(qtbot, visit, worn, PLANTED)
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
     live_output.set_up(OutputSettings(has_lsl=True, has_websocket=True, port=0))
@@ -140,11 +142,13 @@ def test_nothing_that_leaves_names_a_person_or_this_computer(
     assert [name for name in names if len(name) > 2 and name.lower().encode() in found] == []
 
 
-def test_a_whole_walk_is_received_each_sample_once(
+def test_a_whole_walk_is_received_each_sample_once_where_it_was_switched_on_from_the_page(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
     calibrate(qtbot, visit, patient_time)
+    live_output.stop()
     step.enter()
+    live_output.set_up(OutputSettings(has_websocket=True, port=0))
     messages: list[dict[str, Any]] = []
 
     def receive() -> None:
