@@ -68,11 +68,15 @@ def workbook_beside(out: Path) -> Path:
     """The workbook's place beside a report's; raises FileRefusedError where the report or another's file would be."""
     place = out.with_name(WORKBOOK) if out.name == REPORT else out.with_suffix(".xlsx")
     if place.name.casefold() == out.name.casefold():  # on some disks one file
-        what = "this is the place of the workbook beside the report"
-        raise FileRefusedError(str(out), what, "Give the report a file name, such as report.pdf")
+        raise FileRefusedError(
+            str(out),
+            "this is the place of the workbook beside the report",
+            "Give the report a file name, such as report.pdf",
+        )
     if place.exists() and not is_own_workbook(place):
-        what = "this already exists and is not a workbook of Gaitwright"
-        raise FileRefusedError(str(place), what, "Choose another --out")
+        raise FileRefusedError(
+            str(place), "this already exists and is not a workbook of Gaitwright", "Choose another --out"
+        )
     return place
 
 
