@@ -152,6 +152,11 @@ class AlignmentChange:
             raise ValueError(f"{len(self.parts)} parts, expected {least} to {MOST_PARTS}")
 
 
+def condition_returned_to(condition: str, change: AlignmentChange | None) -> str:
+    """Give a walk's condition, or the earlier one that the prosthesis was put back to by the `change` before it."""
+    return (change.returns_to if change is not None else "") or condition
+
+
 @dataclass(frozen=True, slots=True)
 class NetChange:
     """What several changes of one part come to. `done`, `undone`: the texts that do not cancel, in their order.

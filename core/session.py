@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from core.alignment import AlignmentChange
+from core.alignment import AlignmentChange, condition_returned_to
 from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.goals import Goal
@@ -87,6 +87,11 @@ class Recording:
     alignment: AlignmentChange | None = None
     test: PlannedTest | None = None
     unknown: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def returned_to(self) -> str:
+        """The condition that it is: as stated, or the earlier one that it returns to; empty where none was stated."""
+        return condition_returned_to(self.condition, self.alignment)
 
     def holds(self, *sites: Site) -> bool:
         return all(site in self.imu for site in sites)

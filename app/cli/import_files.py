@@ -35,9 +35,7 @@ from devices.files.imports import (
 )
 from devices.files.refusal import FileRefusedError, one_line
 from devices.files.table_choices import ALL_TABLES, NONE, NOTHING_STATED, TableChoices
-from devices.files.trial import ImportedTrial
-
-CSV = "csv"  # of `trial.PROGRAMS`: tables of no particular program
+from devices.files.trial import CSV, ImportedTrial
 
 
 def run(args: argparse.Namespace, progress: Report) -> list[str]:

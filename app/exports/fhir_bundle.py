@@ -5,8 +5,8 @@ not reported has no value and its reason in place of it; nothing is ever called 
 what made the figures is a Device, and a DiagnosticReport holds them together. Simulated figures carry the label that
 HL7 gives to test data.
 
-Posted again, figures replace what they were: each is looked for by its identifier. A patient whom the server knows by
-the code is left as it is.
+Posted again, figures and prostheses replace what they were: each is looked for by its identifier. A patient whom
+the server knows by the code is left as it is.
 """
 
 import json
@@ -79,18 +79,21 @@ class _Bundle:
     def __init__(self, session: Session, analysis: Analysis) -> None:
         self._session, self._analysis = session, analysis
         code, started = session.patient.code.strip(), session.started
-        # without code or date two sessions would have the same names, and the one replace the other
-        self._visit = (code, started) if code and started else (code, started, identity_of(session).hex)
+        # without code or time of day two sessions would have the same names, and the one replace the other
+        is_named = code and "T" in started
+        self._visit = (code, started) if is_named else (code, started, identity_of(session).hex)
         self._patient_url, self._device_url = self._url("patient"), urn("device", software())
         self._subject = {"subject": {"reference": self._patient_url}}
         self._device = {"device": {"reference": self._device_url, "display": software()}}
 
     def transaction(self) -> Resource:
-        observations = [*self._age(), *self._figures(), *self._between_legs(), *self._tests()]
+        measured = [*self._figures(), *self._between_legs(), *self._tests()]
+        observations = [*self._age(), *measured]
         goals = [(self._url("goal", *one.key), self._goal(one)) for one in agreed_with(self._session).held]
         resources = [(self._patient_url, self._patient()), (self._device_url, self._software())]
         resources += [*self._prostheses(), *goals, *observations]
-        resources.append((self._url("report"), self._report(observations)))
+        if measured:
+            resources.append((self._url("report"), self._report(observations)))
         return {
             "resourceType": "Bundle",
             "type": "transaction",
@@ -107,7 +110,7 @@ class _Bundle:
             resource["meta"] = {"security": [TEST_DATA]}
         known = search_of(resource["identifier"][0])
         request = {"method": "PUT", "url": f"{kind}?{known}"}
-        if kind in (PATIENT, DEVICE):
+        if url in (self._patient_url, self._device_url):
             request = {"method": "POST", "url": kind, "ifNoneExist": known}
         return {"fullUrl": url, "resource": resource, "request": request}
 

@@ -10,6 +10,7 @@ import datetime
 import io
 import re
 import zipfile
+import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -55,7 +56,10 @@ NO_FIGURE = EmptyCell()
 Value = str | float | int | EmptyCell | None
 OF_CONDITIONS = ("condition", "walks", "side", "parameter", "mean", "stride_sd", "error", "unit", "strides_used")
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
+CREATOR = "gaitwright"
+OWN = re.compile(rb"<(\w+:)?creator\b[^>]*>gaitwright</")
 NO_TIME = datetime.datetime(1980, 1, 1)  # the first that a ZIP can hold: the same analysis gives the same bytes
+MOST_PROPERTIES_BYTES = 100_000  # a page of text at most
 PROPERTIES, MODIFIED = "docProps/core.xml", re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
 NARROWEST, WIDEST = 10, 42  # letters
 TYPED = ("recording", "condition", "name", "against_name", "walks", "against_walks", "what", "where", "text")
@@ -94,7 +98,7 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
 def workbook(session: Session, analysis: Analysis, paper: str = "a4") -> bytes:
     """Make one workbook (Office Open XML), without sheets that would be empty; the same bytes for the same analysis."""
     book = Workbook(write_only=True)
-    book.properties.creator, book.properties.created = "gaitwright", NO_TIME
+    book.properties.creator, book.properties.created = CREATOR, NO_TIME
     book.properties.title = session.patient.code
     whose = session.patient.code.replace("&", "&&"), SIMULATED if analysis.is_simulated else ""
     add_sheet = partial(_add_sheet, book, PrintSetUp(*whose, PAPERS[paper]))
@@ -117,6 +121,15 @@ def workbook(session: Session, analysis: Analysis, paper: str = "a4") -> bytes:
     written = io.BytesIO()
     book.save(written)
     return _without_times(written.getvalue())
+
+
+def is_own_workbook(path: Path) -> bool:
+    """Whether this program made a workbook, by its properties, which other programs leave as they are."""
+    try:
+        with zipfile.ZipFile(path) as inside, inside.open(PROPERTIES) as properties:
+            return OWN.search(properties.read(MOST_PROPERTIES_BYTES)) is not None
+    except (OSError, KeyError, RuntimeError, zipfile.BadZipFile, zlib.error):  # RuntimeError: it is encrypted
+        return False
 
 
 def _about(session: Session, analysis: Analysis) -> list[list[Value]]:

@@ -144,6 +144,7 @@ class Home(QWidget):
     def finish(self) -> None:
         """Wait for what runs, when the window was closed."""
         self.filling.stop()
+        self.importing.finish()
         if self._questions is not None:
             self._questions.finish()
 

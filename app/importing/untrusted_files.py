@@ -17,18 +17,22 @@ from devices.files.trial import Gathered, ImportedTrial
 from devices.other_packages import Offer
 
 
+def nobody_waits() -> None:
+    """Let what is read end in its own time: it has a deadline."""
+
+
 def read_foreign_session(folder: Path, waiting: Waiting) -> Session:
     """Read as `devices.files.session_folder.read_session`, within limits; raises FileRefusedError."""
     reading = LimitedReading(the_reader(), waiting)
     try:
         return read_session(folder, reading)
     finally:
-        reading.waiting = _nobody_waits  # a large session is read again later, when this is over
+        reading.waiting = nobody_waits  # a large session is read again later, when this is over
 
 
 def write_over_session(session: Session, folder: Path) -> None:
     """Write as `devices.files.session_folder.write_session` over an untrusted folder; raises FileRefusedError."""
-    write_session(session, folder, LimitedReading(the_reader(), _nobody_waits))
+    write_session(session, folder, LimitedReading(the_reader(), nobody_waits))
 
 
 def read_foreign_trial(
@@ -63,19 +67,15 @@ def gather_foreign(
 
 def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
     """Query as `devices.files.parquet_questions.answer`, within limits; raises FileRefusedError."""
-    return LimitedReading(the_reader(), _nobody_waits).ask_parquet(path, sql, is_typed)
+    return LimitedReading(the_reader(), nobody_waits).ask_parquet(path, sql, is_typed)
 
 
 def why_format_unusable(offer: Offer) -> str:
     """Why a format that another package offers cannot be used, tried within limits; empty where it can."""
-    return LimitedReading(the_reader(), _nobody_waits).why_unusable(offer)
+    return LimitedReading(the_reader(), nobody_waits).why_unusable(offer)
 
 
 @cache
 def the_reader() -> LimitedReader:
     """The one process of this program that reads foreign files."""
     return LimitedReader()
-
-
-def _nobody_waits() -> None:
-    """Let it end in its own time: it has a deadline."""

@@ -8,6 +8,7 @@ import hashlib
 import json
 import logging
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 from uuid import UUID
 
@@ -40,6 +41,8 @@ def course_key(details: Session, stored: Sequence[StoredRecording]) -> str:
                         "name": one.name,
                         "kind": one.kind,
                         "condition": one.condition,
+                        "returned_to": one.returned_to,
+                        "test": asdict(one.test) if one.test is not None else None,
                         "is_restrapped_before": one.is_restrapped_before,
                         "left_out_s": {
                             str(side): sorted(times_s) for side, times_s in one.left_out_s.items() if times_s

@@ -22,7 +22,7 @@ from app.wording.body import side_name
 from app.wording.dates import short_date
 from app.wording.recordings import LETTERS
 from app.wording.translation import tr
-from core.alignment import AlignmentChange
+from core.alignment import AlignmentChange, condition_returned_to
 from core.body import Joint, Side
 from core.gait.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
@@ -83,7 +83,7 @@ class Part:
     @property
     def returned_to(self) -> str:
         """The condition that it is: its own, or the earlier one that the prosthesis was put back to before it."""
-        return (self.alignment.returns_to if self.alignment is not None else "") or self.name
+        return condition_returned_to(self.name, self.alignment)
 
     def is_again(self, other: "Part") -> bool:
         """Whether it is the condition of another part, which the prosthesis was put back to since."""

@@ -11,7 +11,6 @@ from typing import Any
 from app.summary.conditions import Part
 from app.summary.visits import by_condition
 from app.system.tables import finite
-from app.wording.recordings import condition_returned_to
 from core.body import Joint, Side
 from core.goals import OF_LEGS
 from core.parameters import CADENCE, SPEED
@@ -154,7 +153,7 @@ def timed_tests_of(analysis: Analysis, recordings: Sequence[Recording]) -> tuple
 
 def _tests(analysis: Analysis, recordings: Sequence[Recording]) -> dict[str, tuple[CourseTest, ...]]:
     """The timed tests by condition, in the order of their definitions."""
-    stated = {recording.name: condition_returned_to(recording) for recording in recordings}
+    stated = {recording.name: recording.returned_to for recording in recordings}
     attempts: dict[str, list[RecordingAnalysis]] = {}
     for walk in analysis.recordings:
         if walk.timed is not None:

@@ -18,7 +18,6 @@ from app.summary.reference_bands import age_and_height, bands_of, sides_with_ban
 from app.summary.request import AnalysedVisit
 from app.summary.walk_figures import Figure, band_of_peak, peak_place, side_cycle, time_distance_figures
 from app.wording.body import side_name
-from app.wording.recordings import condition_returned_to
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.gait.cycles import POINTS
@@ -95,7 +94,7 @@ class Facts:
     def condition(self) -> str:
         """Under which condition was walked, as it was typed, or the one that it is again; empty: none was stated."""
         recordings = self.visit.session.recordings
-        return next((condition_returned_to(one) for one in recordings if one.name == self.walk.name), "")
+        return next((one.returned_to for one in recordings if one.name == self.walk.name), "")
 
     @property
     def speed_m_s(self) -> float:

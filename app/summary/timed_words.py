@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-from app.summary.course_lanes import CourseLane, CourseVisit
-from app.summary.course_words import changes_since_in_words
 from app.summary.numbers_in_words import DAGGER, NOTHING
 from app.wording.measures import short_unit
 from app.wording.translation import capitalised, short_figure, tr
@@ -13,17 +11,11 @@ from core.timed.protocols import TimedProtocol
 from core.verdicts.published_changes import ChangeKind, Population, PublishedChange, published_changes
 
 MDC, MCID = "MDC", "MCID"  # in every language
-OF_A_SIDE = ("left", "right", "both")
-
-
-def comparison_sentences(lane: CourseLane | None, visits: Sequence[CourseVisit]) -> list[str]:
-    """The changes since the last visit and the first one, judged where an error is known."""
-    return [changes_since_in_words(lane, visits)] if lane is not None else []
 
 
 def populations_of(patient: Patient) -> tuple[Population, ...]:
     """Whose published changes stand beside a patient's: those of limb loss with a prosthesis, else the others'."""
-    if patient.prosthetic_side in OF_A_SIDE:
+    if patient.prosthetic_sides:
         return (Population.LIMB_LOSS,)
     return tuple(one for one in Population if one is not Population.LIMB_LOSS)
 

@@ -10,7 +10,7 @@ from datetime import date
 from typing import NamedTuple
 
 from app.summary.conditions import Part, conditions_of
-from app.wording.recordings import condition_returned_to, name_in_words
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
@@ -43,7 +43,7 @@ def by_condition(
 
     An alignment that the prosthesis was put back to is the earlier one again.
     """
-    stated = {recording.name: condition_returned_to(recording) for recording in recordings}
+    stated = {recording.name: recording.returned_to for recording in recordings}
     return _latest(stated, analysis, recordings, prefix, agreed)
 
 

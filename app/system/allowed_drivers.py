@@ -1,11 +1,9 @@
 """Drivers of other packages that somebody allowed on this computer; kept by the package's name and version."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
-import platformdirs
-
+from app.system.kept_json import keep, place_of, read_kept
 from devices.other_drivers import OtherDrivers, load_drivers, offered_drivers
 
 FILE = "drivers.json"
@@ -22,7 +20,7 @@ class DriverPackage:
 
 
 def _place() -> Path:
-    return platformdirs.user_config_path("gaitwright", appauthor=False) / FILE
+    return place_of(FILE)
 
 
 def driver_packages() -> list[DriverPackage]:
@@ -40,11 +38,7 @@ def driver_packages() -> list[DriverPackage]:
 def allow_drivers(package: str, version: str, *, is_allowed: bool) -> None:
     """Allow a package's drivers, or no longer; another version is not meant. Raises OSError: cannot be written."""
     kept = _allowed() | {(package, version)} if is_allowed else _allowed() - {(package, version)}
-    place = _place()
-    place.parent.mkdir(parents=True, exist_ok=True)
-    beside = place.with_suffix(".new")
-    beside.write_text(json.dumps(sorted(kept), indent=1), encoding="utf-8")
-    beside.replace(place)
+    keep(_place(), sorted(kept))
 
 
 def other_drivers() -> OtherDrivers:
@@ -56,7 +50,7 @@ def other_drivers() -> OtherDrivers:
 def _allowed() -> set[tuple[str, str]]:
     """What cannot be read is allowed no longer."""
     try:
-        kept = json.loads(_place().read_text(encoding="utf-8"))
+        kept = read_kept(_place())
         return {(name, version) for name, version in kept if isinstance(name, str) and isinstance(version, str)}
-    except (OSError, ValueError, TypeError):
+    except (ValueError, TypeError):
         return set()

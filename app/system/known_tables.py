@@ -3,15 +3,13 @@
 Columns are kept by their places, never by their names: those are a file's, and may be anybody's.
 """
 
-import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import platformdirs
-
+from app.system.kept_json import keep, place_of, read_kept
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.table_choices import ALL_TABLES, NONE, SEPARATORS, TIME_UNITS, StatedChoices, TableChoices, by_place
 from devices.files.text_files import ENCODINGS
@@ -21,16 +19,12 @@ MOST_COLUMN = 10_000
 
 
 def _place() -> Path:
-    return platformdirs.user_config_path("gaitwright", appauthor=False) / FILE
+    return place_of(FILE)
 
 
 def known_tables() -> StatedChoices:
     """By the fingerprints of tables; what cannot be read is left out, and has to be stated again."""
-    try:
-        kept = json.loads(_place().read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    found = {}
+    kept, found = read_kept(_place()), {}
     for fingerprint, stated in kept.items() if isinstance(kept, dict) else ():
         if fingerprint == ALL_TABLES:
             continue
@@ -49,11 +43,7 @@ def keep_table(fingerprint: str, choices: TableChoices, columns: Sequence[str]) 
     if choices.are_any:
         with suppress(ValueError):
             kept[fingerprint] = by_place(choices, columns)
-    place = _place()
-    place.parent.mkdir(parents=True, exist_ok=True)
-    beside = place.with_suffix(".new")
-    beside.write_text(json.dumps({key: asdict(one) for key, one in kept.items()}, indent=1), encoding="utf-8")
-    beside.replace(place)
+    keep(_place(), {key: asdict(one) for key, one in kept.items()})
 
 
 def _choices(stated: Mapping[str, Any]) -> TableChoices:

@@ -72,12 +72,6 @@ def shown_names(recordings: Sequence[Recording]) -> dict[str, ShownName]:
     return found
 
 
-def condition_returned_to(recording: Recording) -> str:
-    """Give the condition of a walk, or the earlier one that it returns to; empty where none was stated."""
-    changed = recording.alignment
-    return (changed.returns_to if changed is not None else "") or recording.condition
-
-
 def name_in_words(name: str) -> str:
     """Put a name or a condition that we proposed into the user's language; one that somebody gave stays."""
     if (label := _own_labels().get(name.casefold())) is not None:
@@ -146,7 +140,7 @@ def _conditions(recordings: Sequence[Recording]) -> dict[str, tuple[str, int]]:
     """Each kept walk's condition or own name, or what it returns to, and how often sensors were strapped again."""
     strapped = accumulate(one.is_restrapped_before for one in recordings)
     return {
-        one.name: (condition_returned_to(one) or one.name, count)
+        one.name: (one.returned_to or one.name, count)
         for one, count in zip(recordings, strapped, strict=True)
         if one.kind is RecordingKind.WALKING and one.is_kept
     }

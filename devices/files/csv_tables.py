@@ -42,9 +42,8 @@ from devices.files.table_choices import (
 from devices.files.table_layout import TableLayout, fingerprint_of, layout_of, refuse_twice
 from devices.files.tables import NO_VALUE, Table, is_value, read_rows
 from devices.files.text_times import is_time, seconds_of
-from devices.files.trial import ImportedTrial
+from devices.files.trial import CSV, ImportedTrial
 
-FORMAT = "csv"
 OF_OTHERS = frozenset({"packetcounter", "sampletimefine"})  # Xsens and Movella: what their ticks are differs by program
 MOST_SENSORS = 20  # of a column that names them
 
@@ -105,7 +104,7 @@ def csv_trial(
     def read(path: Path) -> list[NamedTable]:
         return tables_of(path, choices_for(path, choices) or NO_CHOICES)
 
-    return trial_of_tables(FORMAT, read, files, rate_hz, may_be_halves=True)
+    return trial_of_tables(CSV, read, files, rate_hz, may_be_halves=True)
 
 
 def choices_for(path: Path, choices: StatedChoices) -> TableChoices | None:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from devices.files.csv_tables import FORMAT as CSV
 from devices.files.csv_tables import choices_for
 from devices.files.formats import format_of, known_format, why_not_recognised
 from devices.files.refusal import FileRefusedError
@@ -12,7 +11,7 @@ from devices.files.session_toml import FILE_NAME
 from devices.files.site_names import without_site
 from devices.files.table_choices import NOTHING_STATED, StatedChoices
 from devices.files.table_layout import fingerprint_of
-from devices.files.trial import SESSION, FilesOfTrial, Gathered
+from devices.files.trial import CSV, SESSION, FilesOfTrial, Gathered
 
 MOST_FILES = 500  # what is dragged may be a whole disk
 

@@ -12,6 +12,7 @@ from devices.files.refusal import FileRefusedError
 T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
+CSV = "csv"  # of `PROGRAMS`: tables of no particular program
 BESIDE_INERTIAL = "Quaternion.csv"  # of the x-IMU3's converter, with the orientation
 OF_XIMU, REGISTERS = ("_CalInertialAndMag", "_CalInertialMagnetic"), "_Registers.csv"  # of the first x-IMU
 SIMULATED_MARK = "SIMULATED.txt"  # beside tables that belong to no session folder, which would say it

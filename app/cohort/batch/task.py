@@ -20,7 +20,7 @@ from app.cohort.batch.done import BatchFolder, DoneRecord, read_mark
 from app.cohort.batch.rows import ReportedOf, reported_of_folder, rows_of
 from app.cohort.batch.software import software
 from app.exports.result_folder import SUMMARY, check_place, written_beside
-from app.importing.untrusted_files import read_foreign_session
+from app.importing.untrusted_files import nobody_waits, read_foreign_session
 from app.system.logs import pseudonymised
 from app.system.progress import nobody
 from core.session import Session
@@ -108,7 +108,7 @@ def _analysed(task: BatchTask) -> SessionOutcome:
         session, reported = source.session, source.reported
     else:
         check_place(results, source)
-        session = read_foreign_session(source, _nobody_waits)
+        session = read_foreign_session(source, nobody_waits)
         reported = reported_of_folder(session, task.batch.mark)
     with written_beside(results, within=task.batch.work) as folder:
         analysis = write_analysed(session, folder, task.choices, nobody)
@@ -183,7 +183,3 @@ def _add(path: Path, digest: _Hash) -> None:
                 digest.update(piece)
     except OSError as problem:
         digest.update(f"{problem.errno}\0".encode())
-
-
-def _nobody_waits() -> None:
-    """Let it end in its own time: the reading has a deadline."""

@@ -1,7 +1,8 @@
 """What comes in: files of other programs and session folders are read, confirmed, and put into the library."""
 
+import re
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,9 +22,11 @@ from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_files, ask_for_folder
 from app.wording.translation import tr, tr_n
+from app.workers.background import Background
 from app.workers.library_controller import LibraryController
 from app.workers.long_work import LongWork
-from devices.files.refusal import FileRefusedError
+from app.workers.refusals import refusal_of
+from devices.files.refusal import FileRefusedError, one_line
 from devices.files.trial import PROGRAMS
 
 if TYPE_CHECKING:
@@ -56,9 +59,12 @@ class Importing(LongWork):
         self._paths: tuple[Path, ...] = ()  # that were asked for
         self._how = HowRead()
         self._read = FilesRead((), (), (), ())
-        self._placing: SessionDraft | None = None
+        self._is_placing_asked = False  # by somebody, not only tried
         self._unsplit: SessionDraft | None = None  # as it was read, of what is shown
         self._is_importing = False
+        self._placing = Background(self)
+        self._placing.done.connect(self._on_placed)
+        self._placing.failed.connect(self._on_placing_failed)
         self.page = ImportPage()
         self._explaining = Explaining(controller, self.page.table, self)
         self._explaining.asked.connect(self._on_table_asked)
@@ -148,7 +154,12 @@ class Importing(LongWork):
         """Import nothing of what was read."""
         self._waiting.clear()
         self._explaining.forget()
+        self._placing.stop()
         self.shown, self._is_importing = None, False
+
+    def finish(self) -> None:
+        """Wait for what runs, when the window was closed."""
+        self._placing.finish()
 
     @property
     def _is_draft(self) -> bool:
@@ -243,6 +254,7 @@ class Importing(LongWork):
     def _show(self, shown: Found) -> None:
         which = tr("Session {number} of {count}: ").format(number=self._number, count=self._count)
         where = f"{which if self._count > 1 else ''}{shown.where}"
+        self._placing.stop()
         if (session := shown.session) is not None:
             names = [recording.name for recording in session.recordings]
             code = session.patient.code
@@ -256,7 +268,7 @@ class Importing(LongWork):
                 where, program, shown.draft, has_columns=shown.are_tables, can_be_combined=can_be_combined
             )
             if self.page.draft.can_be_placed:
-                self._place(self._on_proposed, self._on_not_proposed)
+                self._place(is_asked=False)
         self.asked.emit()
 
     def _on_split_requested(self, number: int, at_s: float) -> None:
@@ -266,7 +278,7 @@ class Importing(LongWork):
         def work(_opened: "OpenedLibrary") -> tuple[SessionDraft, SessionDraft, int]:
             return draft, split_draft(draft, number, at_s), number
 
-        self._controller.run(work, self._on_split, self._on_placing_refused, self)
+        self._controller.run(work, self._on_split, self._on_split_refused, self)
 
     def _on_split(self, split: tuple[SessionDraft, SessionDraft, int]) -> None:
         before, after, number = split
@@ -274,35 +286,32 @@ class Importing(LongWork):
             self.shown = replace(self.shown, draft=after)
             self.page.draft.show_split(after, number)
 
+    def _on_split_refused(self, what: str, remedy: str) -> None:
+        self.reported.emit(what, remedy)
+
     def _on_joining_requested(self) -> None:
         if self.shown is not None and self._unsplit is not None:
             self.shown = replace(self.shown, draft=self._unsplit)
             self.page.draft.show_joined(self._unsplit)
 
     def _on_placing_requested(self) -> None:
-        self._place(self._on_placed, self._on_placing_refused)
+        self._place(is_asked=True)
 
-    def _place(self, on_placed: "Callable[[Chains | None], None]", on_refused: Callable[[str, str], None]) -> None:
+    def _place(self, *, is_asked: bool) -> None:
         """Look in the motion for where the sensors of the draft that is shown were worn."""
         draft, worn = self.shown.draft if self.shown is not None else None, self.page.draft.worn
 
-        def work(_opened: "OpenedLibrary") -> "Chains | None":
+        def work(_report: Report) -> "Chains | None":
             return chains_of_motion(draft, worn) if draft is not None else None
 
-        self._placing = draft
-        self._controller.run(work, on_placed, on_refused, self)
-
-    def _on_proposed(self, chains: "Chains | None") -> None:
-        """Propose positions that nobody asked for: only certain ones, of the draft that is still shown."""
-        is_shown = self.shown is not None and self.shown.draft is self._placing
-        if chains is not None and chains.is_certain and is_shown and self.page.draft.can_be_placed:
-            self.page.draft.show_chains(chains, takes_focus=False)
-
-    def _on_not_proposed(self, _what: str, _remedy: str) -> None:
-        """Nobody asked: the positions stay open."""
+        self._is_placing_asked = is_asked
+        self._placing.start(work)
 
     def _on_placed(self, chains: "Chains | None") -> None:
-        if chains is None:
+        if not self._is_placing_asked:  # only what is certain is proposed to those who did not ask
+            if chains is not None and chains.is_certain and self.page.draft.can_be_placed:
+                self.page.draft.show_chains(chains, takes_focus=False)
+        elif chains is None:
             self.reported.emit(
                 tr("Sensor positions could not be detected."),
                 tr("Use a recording in which all sensors move, or enter the positions."),
@@ -313,8 +322,9 @@ class Importing(LongWork):
                 tr("Two to seven sensors on legs and pelvis are needed. Check the sensor positions."),
             )
 
-    def _on_placing_refused(self, what: str, remedy: str) -> None:
-        self.reported.emit(what, remedy)
+    def _on_placing_failed(self, error: Exception) -> None:
+        if self._is_placing_asked:
+            self.reported.emit(*refusal_of(error))
 
     def _on_read_refused(self, what: str, remedy: str) -> None:
         self.left.emit()
@@ -351,7 +361,8 @@ class Importing(LongWork):
 
 def _why(path: Path, refused: Sequence[FileRefusedError]) -> FileRefusedError | None:
     """Why a file was not read; None where that is not what was refused."""
-    return next((one for one in refused if path.name in one.where), None)
+    name = re.compile(rf"(^|, ){re.escape(one_line(path.name))}(, |$)")  # of several files, or with a line
+    return next((one for one in refused if name.search(one.where)), None)
 
 
 def _named(name: str) -> str:

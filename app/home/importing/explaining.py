@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.home.importing.table_form import TableForm
 from app.home.importing.table_words import stated_of
-from app.importing.untrusted_files import preview_foreign_table
+from app.importing.untrusted_files import nobody_waits, preview_foreign_table
 from app.system.known_tables import keep_table, known_tables
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
@@ -186,10 +186,6 @@ def _is_half(choices: TableChoices) -> bool:
 def _previewed(path: Path, stated: TableChoices) -> TablePreview:
     """How a table is read, or that reading it was ended."""
     try:
-        return preview_foreign_table(path, stated, _nobody_waits)
+        return preview_foreign_table(path, stated, nobody_waits)
     except FileRefusedError as refusal:
         return TablePreview("", (), (), (), stated, stated, (), is_by_values=False, is_cut=False, refusal=refusal)
-
-
-def _nobody_waits() -> None:
-    """Let a preview end in its own time: it reads the beginning only, and has a deadline."""

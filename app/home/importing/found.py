@@ -12,13 +12,11 @@ from app.system.progress import Report
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import StatedChoices
 from devices.files.table_layout import NAMELESS
-from devices.files.trial import SESSION
+from devices.files.trial import CSV, SESSION
 
 if TYPE_CHECKING:
     from core.session import Session
     from devices.files.trial import ImportedTrial
-
-TABLES = "csv"  # the format of tables of any program
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,7 @@ class Found:
     @property
     def are_tables(self) -> bool:
         """Whether what its columns mean can be stated."""
-        return self.draft is not None and self.draft.recordings[0].trial.format == TABLES
+        return self.draft is not None and self.draft.recordings[0].trial.format == CSV
 
     @property
     def is_part(self) -> bool:
@@ -95,12 +93,12 @@ def read_files(paths: Sequence[Path], how: HowRead, report: Report) -> FilesRead
         except FileRefusedError as refusal:
             refused.append(refusal)
             again += files if one.format != SESSION else []
-            tables += files if one.format == TABLES else []
+            tables += files if one.format == CSV else []
             continue
         trials.append((one.name, trial))
         where = str(files[0].parent if len(files) > 1 else files[0])
         parts[id(trial)] = Found(where, one.files, is_one_sensor=one.is_one_sensor)
-        tables += [Path(unread.file) for unread in trial.unread if one.format == TABLES]
+        tables += [Path(unread.file) for unread in trial.unread if one.format == CSV]
     drafts = [_drafted(draft, parts) for draft in drafts_of(trials)]
     if len(paths) == 1 and len(refused) == 1 and not folders and not drafts and not again and not tables:
         raise refused[0]

@@ -33,7 +33,7 @@ from app.summary.request import ReportRequest
 from app.summary.visits import by_condition, condition_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.measures import measure_name, name_with_unit
-from app.wording.recordings import condition_returned_to, name_in_words
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, joined, tr
 from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import JointKind, Side
@@ -52,7 +52,7 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
     """
     visit, is_simulated = request.visit, request.visit.analysis.is_simulated
     if request.earlier is not None:
-        name = condition_returned_to(visit.recording(request.shown))
+        name = visit.recording(request.shown).returned_to
         same = by_condition(request.earlier.analysis, request.earlier.session.recordings).get(name)
         if same is None:
             return None
@@ -83,7 +83,7 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
         )
     words = stated.format(
         day=_day_of(earlier.session.started),
-        condition=_condition_typed(visit.recording(request.shown).condition),
+        condition=_condition_typed(visit.recording(request.shown).returned_to),
         others=", ".join(map(_condition_typed, before)),
     )
     return [heading(tr("Comparison of visits")), paragraph(words)]

@@ -126,7 +126,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
     fitting = fitting_of(session, request.visit.analysis)
-    of_walk, condition = pages_of_walk(facts), request.visit.recording(request.shown).condition
+    of_walk, condition = pages_of_walk(facts), facts.condition
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts, comparison),

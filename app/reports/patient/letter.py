@@ -161,7 +161,7 @@ def _goal(facts: Facts, column: str, of: GoalOf) -> GoalFigure | None:
 def _with_first(request: ReportRequest, number: _Number) -> _Number:
     """With the first of the earlier visits at which this can be read under the same condition."""
     *earlier, now = request.course or (None,)
-    condition = request.visit.recording(request.shown).condition
+    condition = request.visit.recording(request.shown).returned_to
     current = now.course.condition(condition) if now is not None and now.course is not None else None
     for visit in earlier if current is not None else ():
         walked = visit.course.condition(condition) if visit is not None and visit.course is not None else None

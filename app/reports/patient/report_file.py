@@ -9,7 +9,7 @@ from datetime import datetime
 from pathlib import Path
 
 from app.exports.result_folder import REPORT, VISITS, VISITS_CYCLES, WORKBOOK, describe_tables
-from app.exports.spreadsheet import write_spreadsheet
+from app.exports.spreadsheet import is_own_workbook, write_spreadsheet
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import make_report
 from app.summary.comparison import Contrast
@@ -19,7 +19,7 @@ from core.results import Analysis
 from core.session import Session
 from devices.files.refusal import FileRefusedError
 
-PDF, ZIP = b"%PDF-", b"PK\x03\x04"
+PDF = b"%PDF-"
 
 
 def write_report(session: Session, analysis: Analysis, folder: Path, made_at: datetime, version: str) -> None:
@@ -60,24 +60,29 @@ def check_report_place(out: Path) -> None:
     """Raise FileRefusedError where anything but a PDF is at `out`."""
     if out.is_dir():
         raise FileRefusedError(str(out), "this is a folder", "Give the report a file name, such as report.pdf")
-    if not _is_free_or(out, PDF):
+    if out.exists() and not _is_pdf(out):
         raise FileRefusedError(str(out), "this already exists and is not a PDF", "Choose another --out")
 
 
 def workbook_beside(out: Path) -> Path:
-    """The workbook's place beside a report's; raises FileRefusedError where anything but a workbook is there."""
+    """The workbook's place beside a report's; raises FileRefusedError where the report or another's file would be."""
     place = out.with_name(WORKBOOK) if out.name == REPORT else out.with_suffix(".xlsx")
-    if place.is_dir() or not _is_free_or(place, ZIP):
-        raise FileRefusedError(str(place), "this already exists and is not a workbook", "Choose another --out")
+    if place.name.casefold() == out.name.casefold():  # on some disks one file
+        raise FileRefusedError(
+            str(out),
+            "this is the place of the workbook beside the report",
+            "Give the report a file name, such as report.pdf",
+        )
+    if place.exists() and not is_own_workbook(place):
+        raise FileRefusedError(
+            str(place), "this already exists and is not a workbook of Gaitwright", "Choose another --out"
+        )
     return place
 
 
-def _is_free_or(place: Path, start: bytes) -> bool:
-    """Whether nothing is at a place, or a file that begins so."""
-    if not place.exists():
-        return True
+def _is_pdf(place: Path) -> bool:
     with place.open("rb") as file:
-        return file.read(len(start)) == start
+        return file.read(len(PDF)) == PDF
 
 
 def replace_report(content: bytes, out: Path) -> None:

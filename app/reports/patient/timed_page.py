@@ -67,7 +67,7 @@ def timed_page(request: ReportRequest, facts: Facts) -> list[Block]:
 
 def _course(request: ReportRequest, facts: Facts) -> list[Block]:
     """What each test is made for over the visits, under the report's condition."""
-    condition = request.visit.recording(request.shown).condition
+    condition = facts.condition
     charts = charts_of_tests(request.course, condition, facts)
     if not charts:
         return []

@@ -208,7 +208,7 @@ class TimedControl(QObject):
         """The visits, and over them what a test is made for, under the condition of the latest walk."""
         if protocol not in COLUMNS:
             return (), None
-        condition, goals = self._visit.recordings.walks[-1].details.condition, self._visit.patient.details.goals
+        condition, goals = self._visit.recordings.walks[-1].details.returned_to, self._visit.patient.details.goals
         kind = LaneKind(COLUMNS[protocol])
         own = [goal for goal in goals if goal.column == kind.column]
         visits = [one for one in self.earlier.with_this_one() if one.course and _has(one.course, kind, condition)]

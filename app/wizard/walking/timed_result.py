@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseLane, CourseVisit
+from app.summary.course_words import changes_since_in_words
 from app.summary.timed_tables import Sections, columns_of, means_of, sections_of
-from app.summary.timed_words import comparison_sentences
 from app.theme.current import px
 from app.theme.icons import Icon
 from app.widgets.card import Card
@@ -132,7 +132,8 @@ class TimedResultView(QWidget):
             first = tr("{test}: being analysed.").format(test=name_of_test(latest.protocol))
         elif is_valid:
             first = result_sentence(found)
-            stated = [*comparison_sentences(state.lane, state.visits), *sentences_of(found)]
+            changed = changes_since_in_words(state.lane, state.visits) if state.lane is not None else ""
+            stated = [changed, *sentences_of(found)]
         else:
             first = not_valid_sentence(found)
             stated = [not_compared_sentence(found), *sentences_of(found)]

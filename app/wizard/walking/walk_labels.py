@@ -15,7 +15,7 @@ def labels_for(patient: Patient, used: Sequence[str]) -> tuple[str, ...]:
     used = [name_in_words(label) for label in used]
     count = max(ALIGNMENTS, sum(label in _alignments(len(LETTERS)) for label in set(used)) + 1)
     usual = [tr("Barefoot"), tr("Shoes"), tr("AFO")]
-    if patient.prosthetic_side in ("left", "right", "both"):
+    if patient.prosthetic_sides:
         usual = [*_alignments(count), tr("Barefoot"), tr("Shoes")]
     else:
         usual += _alignments(1)
@@ -30,7 +30,7 @@ def label_after(patient: Patient, used: Sequence[str]) -> str:
     used = [name_in_words(label) for label in used]
     if stored and not is_alignment(stored[-1]):
         return stored[-1]
-    if used or patient.prosthetic_side in ("left", "right", "both"):
+    if used or patient.prosthetic_sides:
         return next((label for label in alignments if label not in used), alignments[-1])
     return tr("Barefoot") if "barefoot" in patient.aids else tr("Shoes")
 

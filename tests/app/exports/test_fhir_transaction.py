@@ -14,6 +14,7 @@ from fhir.resources.R4B.bundle import Bundle
 from app.exports.exports import Format, export_from_folder
 from app.exports.fhir_bundle import bundle, write_bundle
 from core.body import Side
+from core.prosthesis import AmputationLevel, Prosthesis
 from core.results import Analysis, RecordingAnalysis
 from core.session import Patient, RecordingKind, Session
 from core.timed.found import NotMeasured, TimedTest
@@ -153,6 +154,49 @@ def test_visits_and_people_never_replace_each_other(visit: tuple[Session, Analys
         assert after - before == len(resources(found, "Observation"))
     kinds = [place.split("/")[0] for place in server.held]
     assert (kinds.count("Patient"), kinds.count("DiagnosticReport"), kinds.count("Device")) == (4, 5, 1)
+
+
+def test_two_visits_of_one_day_without_a_time_never_replace_each_other(coded: tuple[Session, Analysis]) -> None:
+    """Imported sessions have a date at most."""
+    session, analysis = coded
+    server = Server()
+    first = replace(session, started="2026-03-09")
+    for one in (first, replace(first, recordings=session.recordings[1:])):
+        server.post(bundle(one, analysis))
+    count = len(server.held)
+    assert [place.split("/")[0] for place in server.held].count("DiagnosticReport") == 2
+    server.post(bundle(first, analysis))
+    assert len(server.held) == count  # again, it is known
+
+
+def test_a_corrected_prosthesis_replaces_what_was_posted(coded: tuple[Session, Analysis]) -> None:
+    session, analysis = coded
+    server = Server()
+    for level in (AmputationLevel.TRANSTIBIAL, AmputationLevel.TRANSFEMORAL):
+        worn = replace(session.patient, prosthetic_side="left", prostheses={Side.LEFT: Prosthesis(level)})
+        server.post(bundle(replace(session, patient=worn), analysis))
+    (prosthesis,) = (one for one in server.held.values() if one["resourceType"] == "Device" and "patient" in one)
+    assert "transfemoral" in prosthesis["type"]["text"].lower()
+
+
+@pytest.mark.parametrize("unknown", [{}, {"age_years": "71"}])
+def test_a_session_without_a_walk_has_no_report(coded: tuple[Session, Analysis], unknown: dict[str, object]) -> None:
+    session, analysis = coded
+    standing = [one for one in analysis.recordings if one.kind is not RecordingKind.WALKING]
+    found = bundle(
+        replace(session, patient=replace(session.patient, unknown=unknown)),
+        replace(analysis, recordings=tuple(standing)),
+    )
+    assert len(resources(found, "Observation")) == len(unknown)
+    assert resources(found, "DiagnosticReport") == []
+    assert all(one for one in _lists(found))  # FHIR has no empty list
+
+
+def _lists(part: Any) -> Iterator[list[Any]]:
+    if isinstance(part, list):
+        yield part
+    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+        yield from _lists(inner)
 
 
 def test_left_and_right_have_no_code_alone_in_common(coded: tuple[Session, Analysis]) -> None:

@@ -15,6 +15,7 @@ from app.reports.patient.trend_page import charts_of_tests
 from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
+from core.alignment import AlignmentChange
 from core.body import Side, Site
 from core.results import Analysis
 from core.session import RecordingKind, Session
@@ -221,6 +222,24 @@ def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit:
     assert charts_of_tests(course, "barefoot", facts) == {}
     alone = replace(request, course=course[1:])
     assert "Progress by visit" not in str(timed_page(alone, facts))
+
+
+def test_a_test_after_the_return_to_an_alignment_is_compared_with_that_alignment(visit: AnalysedVisit) -> None:
+    session, analysis = with_test(visit, TWO)
+    again = AlignmentChange("Alignment B", (), returns_to="=shoes")
+    recordings = tuple(
+        replace(one, condition="=shoes again", alignment=again) if one.name == "walk 2" else one
+        for one in session.recordings
+    )
+    course = tuple(
+        CourseVisit(
+            UUID(int=number), datetime.date(2026, 9 + number, 2), with_tests((TimedProtocol.TEN_METRES, time_s))
+        )
+        for number, time_s in enumerate((14.0, 10.0))
+    )
+    of = AnalysedVisit(replace(session, recordings=recordings), analysis)
+    request = ReportRequest(of, ("walk 2",), MADE_AT, "1.2.3", course=course)
+    assert "Progress by visit" in str(timed_page(request, facts_of(request)))
 
 
 def with_tests(*tests: tuple[TimedProtocol, float]) -> Course:

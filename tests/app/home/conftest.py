@@ -54,7 +54,9 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
+def home(
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
+) -> Iterator[Home]:
     home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)
@@ -62,4 +64,5 @@ def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settin
         home.show()
         home.activateWindow()
     open_library(qtbot, controller, home, folder)
-    return home
+    yield home
+    home.finish()

@@ -1,20 +1,25 @@
 """Files of other programs, from the window to the library: what is shown first, what is asked, what is refused."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from threading import Event
 
 import numpy as np
-from PySide6.QtCore import Qt
+import pytest
+from PySide6.QtCore import Qt, QThread
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
+from app.home.importing.controller import _why
 from app.home.importing.import_page import ImportPage
+from app.importing.import_drafts import SessionDraft
 from app.widgets.text import Text
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.session import RecordingKind
+from devices.files.refusal import FileRefusedError
 from tests.app.home.home_library import WAIT_MS
 
 FindData = Callable[[str], Path]
@@ -214,6 +219,39 @@ def test_positions_are_proposed_from_movement_without_being_asked_for(
     assert set(page.draft.sites.values()) == {None}
     page.draft.is_right.click()
     assert page.draft.sites["00B421EF"] is Site.RIGHT_FOOT
+
+
+def test_what_the_motion_shows_late_of_one_draft_is_not_stated_of_the_next(
+    qtbot: QtBot, home: Home, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    left, looked = Event(), list[str]()
+
+    def slowly(draft: SessionDraft, _worn: Sequence[str]) -> None:
+        left.wait(WAIT_MS / 1000)
+        looked.append(draft.recordings[0].trial.sensors[0].name)
+
+    monkeypatch.setattr("app.home.importing.controller.chains_of_motion", slowly)
+    first = monitors(tmp_path / "a.csv", ("one", "two"))
+    (tmp_path / "b").mkdir()
+    second = monitors(tmp_path / "b" / "b.csv", ("three", "four"))
+    second.write_text(second.read_text().replace(",100,", ",200,").replace(",101,", ",201,"))
+    page = read(qtbot, home, first, second)
+    page.draft.place.click()
+    home.importing.leave_out()
+    assert "Session 2 of 2" in shown(page)
+    left.set()
+    qtbot.waitUntil(lambda: sorted(looked) == ["one", "one", "three"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not home.importing.findChildren(QThread), timeout=WAIT_MS)
+    assert not home.banner.isVisible()
+
+
+def test_why_a_file_was_not_read_is_not_that_of_one_whose_name_holds_its_own() -> None:
+    other = FileRefusedError("left walk.csv, line 3", "the line ends", "Correct it")
+    assert _why(Path("walk.csv"), [other]) is None
+    own = FileRefusedError("walk.csv, line 2", "the line ends", "Correct it")
+    assert _why(Path("walk.csv"), [other, own]) is own
+    both = FileRefusedError("acc.csv, gyr.csv", "one of the two files has no samples", "Import both")
+    assert [_why(Path("x") / name, [both]) for name in ("acc.csv", "gyr.csv", "yr.csv")] == [both, both, None]
 
 
 def test_a_mapping_file_names_seven_positions(qtbot: QtBot, home: Home, test_data: FindData) -> None:

@@ -19,6 +19,7 @@ from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.wording.translation import spoken_in
+from core.alignment import AlignmentChange
 from core.body import Joint
 from core.goals import Goal, GoalOf
 from core.parameters import KNEE, SPEED
@@ -78,6 +79,21 @@ def test_a_change_beyond_the_error_is_called_larger_than_it_and_one_within_may_b
     small = words(letter_data(of(demo, first_deg=57.0), "en"))
     assert "The change may be measuring error." in small
     assert "larger than" not in small
+
+
+def test_what_returns_to_an_alignment_is_compared_with_that_alignment(demo: ReportRequest) -> None:
+    request = of(demo, first_deg=31.0)
+    again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
+    recordings = tuple(
+        replace(one, condition="Alignment A again", alignment=again) if one.name == demo.shown else one
+        for one in request.visit.session.recordings
+    )
+    session, analysis = replace(request.visit.session, recordings=recordings), request.visit.analysis
+    before = course((walked(knee_deg=31.0), "Alignment A"))
+    days = (FIRST, before), (TODAY, course_of(analysis, recordings))
+    seen = tuple(CourseVisit(UUID(int=k), at, one) for k, (at, one) in enumerate(days))
+    stated = words(letter_data(replace(request, visit=AnalysedVisit(session, analysis), course=seen), "en"))
+    assert f"Your left knee now bends {KNEE_DEG} degrees. In September it was 31 degrees." in stated
 
 
 def test_a_first_visit_compares_with_nothing(demo: ReportRequest) -> None:

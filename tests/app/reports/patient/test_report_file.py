@@ -15,7 +15,7 @@ import typst
 from app.cli.main import main
 from app.exports.result_folder import session_of
 from app.reports.patient.document import make_report
-from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
+from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, workbook_beside
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
@@ -52,9 +52,31 @@ def test_the_workbook_has_the_name_of_the_report_and_replaces_only_a_workbook(
     assert f"{tmp_path / 'anna.xlsx'}: all figures of the session." in capsys.readouterr().out
     (tmp_path / "notes.xlsx").write_text("not a workbook")
     assert main([*report, str(tmp_path / "notes.pdf")]) == 2
-    assert "notes.xlsx: this already exists and is not a workbook" in capsys.readouterr().err
+    assert "notes.xlsx: this already exists and is not a workbook of Gaitwright" in capsys.readouterr().err
     assert (tmp_path / "notes.xlsx").read_text() == "not a workbook"
     assert not (tmp_path / "notes.pdf").exists()
+
+
+def test_no_workbook_of_somebody_else_is_replaced(tmp_path: Path) -> None:
+    place = tmp_path / "anna.xlsx"
+    book = openpyxl.Workbook()
+    book.properties.title = "gaitwright"
+    book.save(place)
+    with pytest.raises(FileRefusedError, match="not a workbook of Gaitwright"):
+        workbook_beside(place.with_suffix(".pdf"))
+    book.properties.creator = "gaitwright"
+    book.save(place)
+    assert workbook_beside(place.with_suffix(".pdf")) == place
+    place.unlink()
+    place.mkdir()
+    with pytest.raises(FileRefusedError, match="not a workbook of Gaitwright"):
+        workbook_beside(place.with_suffix(".pdf"))
+
+
+@pytest.mark.parametrize("name", ["anna.xlsx", "anna.XLSX"])
+def test_no_report_has_the_place_of_its_workbook(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FileRefusedError, match="the place of the workbook"):
+        workbook_beside(tmp_path / name)
 
 
 @pytest.mark.endurance

@@ -10,6 +10,7 @@ from uuid import UUID
 import pytest
 
 from app.reports.blocks import Block
+from app.reports.patient.comparison_page import not_compared_page
 from app.reports.patient.document import facts_of, report_data
 from app.reports.patient.trend_chart import trend_chart
 from app.reports.patient.trend_page import trend_page
@@ -18,6 +19,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.summary.trend_lines import TrendValue
 from app.wording.timed_tests import name_of_test
+from core.alignment import AlignmentChange
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.parameters import KNEE
@@ -111,6 +113,33 @@ def test_the_page_is_in_the_report_where_visits_were_given(demo: ReportRequest) 
     without, with_it = (report_data(replace(demo, course=tuple(course))) for course in ((), seen))
     assert len(with_it["pages"]) == len(without["pages"]) + 1
     assert with_it["pages"][-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
+
+
+def test_the_page_of_a_return_to_an_alignment_is_that_alignments(demo: ReportRequest) -> None:
+    again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
+    session = demo.visit.session
+    recordings = tuple(
+        replace(one, condition="Alignment A again", alignment=again) if one.name == demo.shown else one
+        for one in session.recordings
+    )
+    visit = AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
+    seen = visits(walk(31, condition="Alignment A"), walk(52, condition="Alignment A"))
+    pages = report_data(replace(demo, visit=visit, course=tuple(seen)))["pages"]
+    assert pages[-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
+
+
+def test_an_earlier_visit_without_the_alignment_that_was_returned_to_is_stated_with_that_alignment(
+    demo: ReportRequest,
+) -> None:
+    again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
+    session = demo.visit.session
+    recordings = tuple(
+        replace(one, condition="Alignment A again", alignment=again) if one.name == demo.shown else one
+        for one in session.recordings
+    )
+    visit = AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
+    (_, paragraph) = not_compared_page(replace(demo, visit=visit, earlier=demo.visit))
+    assert "has no walk in this condition (\u2068Alignment A\u2069)" in str(paragraph["said"])
 
 
 @pytest.mark.parametrize("value", [0.7, 31.0, 60.0])

@@ -10,9 +10,11 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import Limits, StoredSession
 from app.system.progress import nobody
 from app.wizard.resuming import current_course_key, read_analysed
+from core.alignment import AlignmentChange
 from core.body import Joint, Side, Site
 from core.prosthesis import AmputationLevel, Prosthesis
 from core.session import Patient, Session
+from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
 from tests.simulated import session_of
@@ -43,6 +45,26 @@ def corrected(opened: OpenedLibrary, visit: StoredSession, change: Callable[[Ses
 def relabelled(opened: OpenedLibrary, visit: StoredSession) -> None:
     walk = visit.recordings[1]
     opened.library.recordings.change(walk, replace(walk.details, condition="barefoot"))
+
+
+def returned(opened: OpenedLibrary, visit: StoredSession) -> None:
+    walk = visit.recordings[1]
+    again = AlignmentChange("boots", (), returns_to="barefoot")
+    opened.library.recordings.change(walk, replace(walk.details, alignment=again))
+
+
+def tested(opened: OpenedLibrary, visit: StoredSession) -> None:
+    walk = visit.recordings[1]
+    opened.library.recordings.change(walk, replace(walk.details, test=PlannedTest(TimedProtocol.TEN_METRES)))
+
+
+def measured(opened: OpenedLibrary, visit: StoredSession) -> None:
+    tested(opened, visit)
+    visit = opened.library.sessions.get(visit.id)
+    before, walk = current_course_key(visit), visit.recordings[1]
+    longer = PlannedTest(TimedProtocol.TEN_METRES, course_m=10.0)
+    opened.library.recordings.change(walk, replace(walk.details, test=longer))
+    assert current_course_key(opened.library.sessions.get(visit.id)) != before
 
 
 def left_out(opened: OpenedLibrary, visit: StoredSession) -> None:
@@ -93,7 +115,21 @@ def other_level(opened: OpenedLibrary, visit: StoredSession) -> None:
 
 
 @pytest.mark.parametrize(
-    "correct", [relabelled, left_out, not_kept, swapped, turned, zeroed, without_ankle, other_side, other_level]
+    "correct",
+    [
+        relabelled,
+        returned,
+        tested,
+        measured,
+        left_out,
+        not_kept,
+        swapped,
+        turned,
+        zeroed,
+        without_ankle,
+        other_side,
+        other_level,
+    ],
 )
 def test_what_was_found_no_longer_holds_once_something_is_put_right(
     opened: OpenedLibrary, visit: StoredSession, correct: Callable[[OpenedLibrary, StoredSession], None]

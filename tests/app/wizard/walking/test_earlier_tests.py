@@ -2,8 +2,11 @@
 
 import datetime
 from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
 from uuid import UUID
 
+import pytest
 from pytestqt.qtbot import QtBot
 
 from app.storage.opened import OpenedLibrary
@@ -16,6 +19,7 @@ from app.wizard.walking.timed_chooser import TimedChooser
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResultView
 from app.workers.library_controller import LibraryController
+from core.alignment import AlignmentChange
 from core.session import Session
 from core.timed.measures import COLUMNS
 from core.timed.protocols import PlannedTest, TimedProtocol
@@ -98,6 +102,29 @@ def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot) -> None:
     )
     assert view.course.isVisible()
     assert "+0.41 since 20 Jun" in [text.text() for text in view.course.findChildren(Text)]
+
+
+def test_a_test_after_the_return_to_an_alignment_is_beside_those_of_that_alignment(
+    qtbot: QtBot, controller: LibraryController, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session_id = asked(qtbot, controller, with_visits(("2026-10-03", 11.4, "Alignment A")))
+    assert isinstance(session_id, UUID)
+    with qtbot.waitSignal(visit.resumed, timeout=10_000):
+        visit.resume(session_id)
+    control = TimedControl(visit, visit)
+    with qtbot.waitSignal(control.changed, timeout=10_000):
+        control.earlier.read()
+    walk = timed(UP, time_s=9.0)
+    again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
+    (stated,) = recordings((walk, "Alignment A again"))
+    walked = replace(stated, alignment=again, test=PlannedTest(UP))
+    monkeypatch.setattr(visit.evaluation, "analysis", analysis(walk))
+    monkeypatch.setattr(visit.evaluation, "session", Session((walked,)))
+    monkeypatch.setattr(visit.recordings, "every", [SimpleNamespace(details=walked)])
+    result = control.result()
+    assert result is not None
+    assert result.lane is not None
+    assert len(result.visits) == 2
 
 
 def test_a_first_test_has_no_course_and_nothing_is_stated_of_a_change(qtbot: QtBot) -> None:
