@@ -1,8 +1,10 @@
 """The live output is switched on in the settings, which say what came of it."""
 
+import random
 import socket
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -39,8 +41,10 @@ def card(qtbot: QtBot, settings: Settings) -> LiveOutputCard:
 
 
 def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as one:
-        return int(one.getsockname()[1])
+    """One of those that the system gives nobody who asks for any."""
+    while True:
+        with suppress(OSError), socket.create_server(("127.0.0.1", random.randrange(20_000, 30_000))) as one:
+            return int(one.getsockname()[1])
 
 
 def enter_port(card: LiveOutputCard, text: str) -> None:
