@@ -57,6 +57,9 @@ class KneeCheck:
         self._last_s = -math.inf  # of the last peak of flexion
 
     def _follow(self, time_s: float, angle_rad: float) -> None:
+        is_walking = time_s - self._last_s <= MAX_STRIDE_S
+        if not is_walking:
+            self._odd_s.clear()
         if self._is_bending:
             self._highest = max(self._highest, (angle_rad, time_s))
             if angle_rad < self._highest[0] - self._bend_rad:
@@ -65,8 +68,7 @@ class KneeCheck:
                 self._is_bending, self._lowest = False, angle_rad
             return
         self._lowest = min(self._lowest, angle_rad)
-        if time_s - self._last_s > MAX_STRIDE_S:
-            self._odd_s.clear()  # the patient is standing
+        if not is_walking:
             self._bend_rad = MIN_BEND_RAD
         if angle_rad > self._lowest + self._bend_rad:
             self._is_bending, self._highest = True, (angle_rad, time_s)

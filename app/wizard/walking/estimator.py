@@ -265,10 +265,22 @@ class _Foot:
         self._contacts_s: list[float] = []  # of the last seconds
         self._from_s = -np.inf
         self._passed = 0  # strides since `_from_s` whose beginning is not among them any more
-        self.is_doubtful = False  # since `_from_s`: what was lost or invented stays in the count
+        self._first_s = np.inf  # of the contacts since `_from_s`
+        self._is_doubtful_now = self._was_doubtful = False
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether its count is: what was lost or invented since its first contact stays in it.
+
+        Before that a patient may end another movement, in which knees bend and no foot lands.
+        """
+        return self._is_doubtful_now or self._was_doubtful
 
     def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
-        self.is_doubtful |= foot.is_doubtful and foot.doubtful_from_s >= self._from_s
+        contacts_s = [event.time_s for event in foot.events if event.event is FootEvent.INITIAL_CONTACT]
+        self._first_s = min([self._first_s, *(time_s for time_s in contacts_s if time_s >= self._from_s)])
+        self._is_doubtful_now = foot.is_doubtful and foot.doubtful_from_s >= self._from_s
+        self._was_doubtful |= self._is_doubtful_now and foot.doubtful_from_s >= self._first_s
         if block is not None:
             before = block.time_s[:1] if self._received_s is None else np.array([self._received_s])
             time_s = np.concatenate([before, block.time_s])
@@ -288,8 +300,8 @@ class _Foot:
         Contacts before `kept_from_s` go: another `time_s` later counts from there at the earliest.
         """
         if time_s != self._from_s:
-            self._from_s, self._passed = time_s, 0
-            self.is_doubtful = False
+            self._from_s, self._passed, self._first_s = time_s, 0, np.inf
+            self._is_doubtful_now = self._was_doubtful = False
         strides = [(start, end) for start, end in pairwise(self._contacts_s) if end - start <= MAX_STRIDE_S]
         count = self._passed + sum(start >= time_s for start, _ in strides)
         self._passed += sum(time_s <= start and end < kept_from_s for start, end in strides)

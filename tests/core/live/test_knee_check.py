@@ -72,6 +72,8 @@ def test_doubt_ends_with_four_sound_strides_with_standing_and_with_a_gap_of_the_
     is_there = AngleSamples(angles.tick, angles.time_s, angles.angle_rad.copy(), angles.sd_rad)
     is_there.angle_rad[round(6 * STRIDE_S / 0.01) :] = np.deg2rad(5.0)
     assert not doubts(is_there, [])[-1]
+    is_there.angle_rad[round(6 * STRIDE_S / 0.01) :] = np.deg2rad(50.0)  # in deep flexion, as on a chair
+    assert not doubts(is_there, [])[-1]
     angles.angle_rad[round(6 * STRIDE_S / 0.01)] = np.nan
     shown = doubts(angles, [])
     assert shown[round(5.9 * STRIDE_S / 0.1)]
