@@ -64,7 +64,7 @@ def split_trial(trial: ImportedTrial, at_s: float) -> Parts:
             ", ".join(dict.fromkeys(sensor.name for sensor in filled)),
             "there are no samples on one side of {at} s",
             "Split the recording at a time within it",
-            at=f"{at_s:g}",
+            at=f"{at_s:.0f}",
         )
     is_broken = max(shifts_s) - min(shifts_s) > SAME_SHIFT_S
     is_known = not any(shifts_s)

@@ -27,9 +27,9 @@ def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient: Patient = 
 def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> SessionRecording:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
-    acquisition.ask(kind)
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         visit.recordings.begin(acquisition, kind, condition)
+    acquisition.ask(kind)  # by now nothing of it is missed, however busy the computer is
     until_s = acquisition.now_s + seconds
     qtbot.waitUntil(lambda: acquisition.now_s > until_s, timeout=10_000)
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000) as ended:

@@ -60,12 +60,12 @@ def test_knees_that_bend_before_the_first_contact_of_a_walk_leave_its_count() ->
     foot = _Foot()
     foot.strides_since(4.0, -KEPT_S)
     in_the_air = LiveFoot((), (), Phase.SWING, 0.0, 0, is_doubtful=True, doubtful_from_s=4.6)
-    foot.take(in_the_air, None)
-    assert foot.is_doubtful
-    for k in range(5):  # until four steps are as they should be, the air's are among the last
-        foot.take(replace(contact(9.0 + 1.2 * k), is_doubtful=k < 4, doubtful_from_s=4.6), None)
-    assert not foot.is_doubtful
-    assert foot.strides_since(4.0, -KEPT_S) == 4
-    foot.take(replace(contact(15.0), is_doubtful=True, doubtful_from_s=13.8), None)
-    foot.take(contact(16.2), None)
-    assert foot.is_doubtful
+    steps = [replace(contact(9.0 + 1.2 * k), is_doubtful=k < 4, doubtful_from_s=4.6) for k in range(5)]
+    lost = replace(contact(15.0), is_doubtful=True, doubtful_from_s=13.8)
+    doubts = []
+    for one in (in_the_air, *steps, lost, contact(16.2)):
+        foot.take(one, None)
+        doubts.append(foot.is_doubtful)
+    # until four steps are as they should be, the air's are among the last; one that is lost later stays
+    assert doubts == [*[True] * 5, False, True, True]
+    assert foot.strides_since(4.0, -KEPT_S) == 6
