@@ -257,7 +257,7 @@ def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[
     note = wizard.shell.bar.state.note
     step: Any = wizard.current
     if (stated := SAVED_AS.search(note)) is not None:
-        written = step.saved or step.exported
+        written = step.written
         if written.name != stated[1] or not (written.is_file() or any(written.glob("*.pdf"))):
             yield f"the bar says {stated[0]!r}, there is no report"
     if visit.session is not None:

@@ -358,7 +358,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis and the first 
     Stop("42-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop(
         "43-saved",
-        states("Saved as"),
+        states("Saved as results"),
         lingers_s=2.0,
         leaves=(
             ("results*/**/alignments.csv", " A,foot_front_screw,2,0.5,4,"),
@@ -417,7 +417,7 @@ TIMED: tuple[Stop, ...] = (  # every timed test, by keys; those of minutes are e
     Stop("61-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop(
         "62-saved",
-        states("Saved as"),
+        states("Saved as results"),
         lingers_s=2.0,
         leaves=tuple(
             ("results*/**/timed_test.csv", f",{test},test,")

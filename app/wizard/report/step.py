@@ -66,6 +66,7 @@ class ReportStep(Step):
         self.dialog: QFileDialog | None = None
         self.saved: Path | None = None  # the report
         self.exported: Path | None = None  # the folder of the data
+        self.written: Path | None = None  # the latest of them
         self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
         self._clinic = ""
@@ -130,7 +131,7 @@ class ReportStep(Step):
         export = BarAction(tr("Export data"), self._export, is_requested=False, is_enabled=can)
         letter = BarAction(tr("Patient letter"), self.print_letter, "", Icon.PRINT, is_enabled=can)
         put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_enabled=can)
-        quiet, written = (put, letter), self.saved or self.exported
+        quiet, written = (put, letter), self.written
         if written is None:
             return BarState(primary=save, others=(export,), quiet=quiet, note=self._note())
         show = BarAction(tr("Open the folder"), self._open_folder)
@@ -219,8 +220,8 @@ class ReportStep(Step):
         return session_name(reported.patient.code, reported.started)
 
     def _open_folder(self) -> None:
-        folder = self.saved.parent if self.saved is not None else self.exported
-        if folder is not None:
+        if (written := self.written) is not None:
+            folder = written if written == self.exported else written.parent
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
 
     def on_intent(self, intent: Intent) -> bool:
@@ -427,12 +428,15 @@ class ReportStep(Step):
         self._controller.run_long(work, self._on_exported, self._on_refused, None, self)
 
     def _on_saved(self, file: Path) -> None:
-        self.is_saving, self.saved = False, file
+        self.is_saving = False
+        self.saved = self.written = file
         self.reported.emit("", "")
         self.changed.emit()
 
     def _on_exported(self, found: tuple[Path, list[str]]) -> None:
-        self.is_saving, (self.exported, lines) = False, found
+        self.is_saving = False
+        self.exported, lines = found
+        self.written = self.exported
         self.reported.emit(tr("Not every file was written.") if lines else "", "\n".join(lines[:MOST_LINES]))
         self.changed.emit()
 

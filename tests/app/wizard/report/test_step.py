@@ -255,6 +255,14 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit
     assert (out / report_name(visit)).read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
+    assert step.bar().note == "Saved as results."
+    save: Callable[[str], None] = step.save_report
+    save(str(tmp_path / "first.pdf"))
+    qtbot.waitUntil(lambda: step.saved is not None, timeout=WAIT_MS)
+    assert step.bar().note == "Saved as first.pdf."
+    chosen(str(tmp_path / "more"))
+    qtbot.waitUntil(lambda: step.exported == tmp_path / "more", timeout=WAIT_MS)
+    assert step.bar().note == "Saved as more."
 
 
 def test_a_file_that_was_not_written_is_named_with_its_reason(
