@@ -103,9 +103,9 @@ def visit_of(wizard: Wizard) -> Visit:
     return wizard.visit
 
 
-def place_of(wizard: Wizard) -> StepId:
-    assert wizard.current is not None
-    return wizard.step_id
+def wait_for_place(qtbot: QtBot, wizard: Wizard, step: StepId) -> None:
+    """Wait until the session that was taken up is at this step; what it holds may still be read."""
+    qtbot.waitUntil(lambda: wizard.current is not None and wizard.step_id == step, timeout=WAIT_MS)
 
 
 def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
@@ -127,7 +127,7 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
     visit = visit_of(wizard)
     (walk,) = visit.recordings.walks
     assert walk.stored.state is RecordingState.RECOVERED
-    assert place_of(wizard) == StepId.WALKING
+    wait_for_place(qtbot, wizard, StepId.WALKING)
     assert walk.read_back is not None
     assert set(walk.read_back.imu) == set(LEG_SITES)
     for block in walk.read_back.imu.values():
@@ -170,7 +170,7 @@ def test_before_a_walk_was_kept_or_discarded(
     visit = visit_of(wizard)
     assert samples_of(visit) == reported["takes"]
     assert visit.recordings.walks[0].stored.state is RecordingState.CLOSED
-    assert place_of(wizard) == StepId.WALKING
+    wait_for_place(qtbot, wizard, StepId.WALKING)
     step = wizard.current
     assert isinstance(step, WalkingStep)
     assert (step.state, step.note) == (StepState.ATTENTION, "include or exclude?")
@@ -178,7 +178,7 @@ def test_before_a_walk_was_kept_or_discarded(
     qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     wizard.show_session(UUID(reported["session"]))
     qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
-    assert place_of(wizard) == StepId.RESULTS
+    wait_for_place(qtbot, wizard, StepId.RESULTS)
 
 
 def check_corrections(qtbot: QtBot, wizard: Wizard, reported: dict[str, Any]) -> None:
@@ -200,7 +200,7 @@ def test_amid_the_results(qtbot: QtBot, start_again: Start, untouched_library: P
     """Every correction is there: a stride left out, a condition, a sign, a walk that does not count."""
     reported = killed_at(Point.RESULTS, tmp_path, untouched_library)
     _, wizard = start_again(reported["session"])
-    assert place_of(wizard) == StepId.RESULTS
+    wait_for_place(qtbot, wizard, StepId.RESULTS)
     check_corrections(qtbot, wizard, reported)
     step = wizard.current
     assert isinstance(step, ResultsStep)
@@ -216,7 +216,7 @@ def test_amid_the_report(
     out = tmp_path / "out"
     assert not out.exists()
     _, wizard = start_again(reported["session"])
-    assert place_of(wizard) == StepId.RESULTS
+    wait_for_place(qtbot, wizard, StepId.RESULTS)
     check_corrections(qtbot, wizard, reported)
     wizard.go_to(StepId.REPORT)
     step = wizard.current
