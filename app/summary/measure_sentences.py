@@ -87,6 +87,16 @@ BESIDE = {  # how one leg has less than the other, and more
     ),
 }
 BESIDE[parameters.ANKLE_RANGE] = BESIDE[parameters.KNEE_RANGE]
+CHANGES = (
+    (
+        later("{clause} {now}, {size} more than {before} ({other})."),
+        later("{clause} {now}, {size} more than {before}."),
+    ),
+    (
+        later("{clause} {now}, {size} less than {before} ({other})."),
+        later("{clause} {now}, {size} less than {before}."),
+    ),
+)
 OTHER_BESIDE = (
     later("{measure} is {size} lower on the {first} than on the {second}: {value} against {other}."),
     later("{measure} is {size} higher on the {first} than on the {second}: {value} against {other}."),
@@ -94,17 +104,18 @@ OTHER_BESIDE = (
 
 
 def change_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
-    """State a measure and its change: "Left knee flexes 54° in B, 5° more ..."; empty `who`: the whole walk."""
-    decimals = agreeing_decimals(column, now.value, before.value, difference)
+    """State a measure and its change: "Left knee flexes 54° in B, 5° more ..."; empty `who`: the whole walk.
+
+    What it is compared with is left out where, rounded, it would not be as far away as stated.
+    """
+    unit, decimals = unit_and_decimals(column)
     value, size = _figures(column, (now.value, abs(difference)), decimals)
-    other = fixed(before.value, decimals) + unit_and_decimals(column)[0]
+    other = fixed(before.value, decimals) + unit
     pattern = CLAUSES.get(column, OTHER_OF_LEG if who else OTHER)
     clause = tr(pattern).format(who=who, measure=name_in_sentence(column), value=value)
-    stated = (
-        tr("{clause} {now}, {size} less than {before} ({other}).")
-        if difference < 0
-        else tr("{clause} {now}, {size} more than {before} ({other}).")
-    )
+    with_other, alone = CHANGES[difference < 0]
+    agrees = agreeing_decimals(column, now.value, before.value, difference) == decimals
+    stated = tr(with_other if agrees else alone)
     return capitalised(stated.format(clause=clause, now=now.where, size=size, before=before.where, other=other))
 
 

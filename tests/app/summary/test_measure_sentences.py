@@ -43,8 +43,9 @@ def test_every_compared_measure_has_a_whole_sentence_with_all_its_values(column:
     assert "{" not in stated
 
 
-def test_a_difference_is_subtracted_before_it_is_rounded_and_the_values_show_it() -> None:
-    assert "1.184 m/s with B, 0.388 m/s more than with A (0.796 m/s)" in changed("speed_m_s", 0.388, 1.184, 0.796)
+def test_a_difference_is_subtracted_before_it_is_rounded_and_no_value_contradicts_it() -> None:
+    assert changed("speed_m_s", 0.388, 1.184, 0.796).endswith("1.18 m/s with B, 0.39 m/s more than with A.")
+    assert changed("speed_m_s", -0.388, 0.796, 1.184).endswith("0.80 m/s with B, 0.39 m/s less than with A.")
     assert "1.19 m/s with B, 0.39 m/s more than with A (0.80 m/s)" in changed("speed_m_s", 0.39, 1.19, 0.80)
 
 

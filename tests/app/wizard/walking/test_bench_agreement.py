@@ -156,22 +156,24 @@ def check_sentence_and_table(page: Shown) -> tuple[str, re.Match[str]]:
     figures = ROW.match(page.rows[name])
     assert figures is not None, page.rows[name]
     change, error = figures["change"], figures["error"]
-    is_change = " with A (" in page.first
+    is_change = " than with A" in page.first
     sentences = re.split(r"(?<=\.) ", page.then)
     of_error = next(one for one in sentences if one.startswith("Likely between " if is_change else "Difference "))
     assert bool(figures["mark"]) is is_change is page.has_arrows
     if is_change:
-        value, size, other = NUMBER.findall(page.first)
-        assert re.search(r"with B, .* (more|less) than with A \(", page.first)
+        value, size, *others = NUMBER.findall(page.first)
+        assert re.search(r"with B, .* (more|less) than with A( \(|\.$)", page.first)
         signed = size if " more than " in page.first else f"−{size}"
         assert number(change) * number(signed) > 0
     else:
         other, value = NUMBER.findall(page.first)
+        others = [other]
         (size,) = NUMBER.findall(of_error)[:1]
         signed = f"{number(value) - number(other):.{decimals(value)}f}"
         assert agree(signed.lstrip("-"), size)
     assert agree(change, signed), (change, signed)
-    assert round(number(value) - number(other), decimals(value)) == pytest.approx(number(signed), abs=1e-6)
+    for other in others:  # stated where, rounded, it is as far away as stated
+        assert round(number(value) - number(other), decimals(value)) == pytest.approx(number(signed), abs=1e-6)
     assert (abs(number(change)) > number(error)) is is_change or agree(change.lstrip("+−"), error)
     low, high = sorted((number(change) - number(error), number(change) + number(error)), key=abs)
     edges = NUMBER.findall(of_error)[:2] if is_change else NUMBER.findall(of_error)[1:3]
