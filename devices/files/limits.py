@@ -96,7 +96,9 @@ def _own() -> list[Path]:
     """Where Python, its packages and the system's libraries are."""
     packages = [Path(__file__).parents[2] / name for name in ("core", "devices")]
     ours = [Path(entry) for entry in sys.path if Path(entry).name in ("site-packages", "dist-packages", "lib-dynload")]
+    # an installed bundle's modules are in its executable, which is opened for each that is not imported yet
     prefixes = [Path(prefix) for prefix in (sys.base_prefix, sys.prefix, getattr(sys, "_MEIPASS", sys.prefix))]
+    prefixes.append(Path(sys.executable))
     cache = [Path(sys.pycache_prefix)] if sys.pycache_prefix else []
     return [*packages, *ours, *prefixes, *cache, *map(Path, SYSTEMS)]
 
