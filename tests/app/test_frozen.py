@@ -1,6 +1,7 @@
 """Tests that Gaitwright, frozen into a program of its own, begins its child processes again as itself."""
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -91,3 +92,31 @@ def test_the_word_is_no_subcommand_and_no_option() -> None:
 
     assert child.WORD not in SUBCOMMANDS
     assert not child.WORD.startswith("-")
+
+
+CONFINED = """
+import sys
+from pathlib import Path
+from devices.files.limits import forbid_reading
+program, other = map(Path, sys.argv[1:])
+sys.executable = str(program)
+forbid_reading([])
+program.read_bytes()
+try:
+    other.read_bytes()
+except PermissionError:
+    print("confined")
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="what a process reads is confined on Linux alone")
+def test_a_confined_reading_still_imports_from_the_program(tmp_path: Path) -> None:
+    """A bundle's modules are in its executable, and the first table imports some of them."""
+    program, other = tmp_path / "bundle" / "gaitwright", tmp_path / "other.csv"
+    program.parent.mkdir()
+    for file in (program, other):
+        file.write_text("modules")
+    words = [sys.executable, "-c", CONFINED, str(program), str(other)]
+    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr
+    assert ended.stdout in ("confined\n", "")  # a kernel without Landlock confines nothing
