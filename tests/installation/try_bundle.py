@@ -195,7 +195,7 @@ def lead(root: BareRoot, place: Path, stops: Sequence[Stop], trace: Path | None 
                 for place in (pictures, pictures / LOOK[0].replace(" ", "-")):
                     place.mkdir()
                     os.chown(place, USER_ID, USER_ID)
-                stopwatch_s = tour.lead(application, stops, pictures, LOOK)
+                stopwatch_s = tour.lead(application, stops, pictures, LOOK).stopwatch_s
                 saved = [file.name for file in application.home.rglob("*.pdf")]
                 shutil.copytree(pictures, PICTURES, dirs_exist_ok=True)
     finally:
