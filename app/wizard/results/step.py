@@ -357,8 +357,10 @@ class ResultsStep(Step):
     def _on_courses(self, before: tuple[UUID, tuple[CourseVisit, ...]]) -> None:
         if before != self._before:
             is_first, (_, visits) = before[0] != self._before[0], before
-            self._before, self._held = before, None
-            if self._shown is not None and self._frame is not None:
+            is_news, self._before = visits != self._before[1], before
+            if is_news:  # to show all again takes a tenth of a second
+                self._held = None
+            if is_news and self._shown is not None and self._frame is not None:
                 self._hold(self._frame.results(), self._shown)
             if is_first and any(visit.course is None for visit in (*visits[:1], *visits[-1:])):
                 self._visit.read_earlier()  # an imported visit: its course is kept then
