@@ -46,9 +46,9 @@ def run(qtbot: QtBot, held_up_by: Callable[[], None]) -> None:
 
 
 def test_long_work_is_seen_with_its_place(qtbot: QtBot, dog: Watchdog) -> None:
-    run(qtbot, lambda: work_for(0.15))
+    run(qtbot, lambda: work_for(0.3))
     (late,) = dog.late
-    assert late.busy_s > 0.1
+    assert late.busy_s > 0.2
     assert "work_for" in str(late)
 
 
@@ -58,11 +58,11 @@ def test_a_long_wait_is_seen_with_its_place(qtbot: QtBot, dog: Watchdog) -> None
     lock.acquire()
 
     def wait_for_a_lock() -> None:
-        lock.acquire(timeout=0.3)
+        lock.acquire(timeout=0.5)
 
     run(qtbot, wait_for_a_lock)
     (late,) = dog.late
-    assert late.waited_s > 0.2
+    assert late.waited_s > 0.3
     assert "wait_for_a_lock" in str(late)
 
 
@@ -82,7 +82,7 @@ def test_waiting_for_events_is_no_fault(qtbot: QtBot, dog: Watchdog) -> None:
 
 def test_what_the_test_does_itself_is_no_fault(qtbot: QtBot, dog: Watchdog) -> None:
     with dog.paused():
-        work_for(0.15)
+        work_for(0.3)
     qtbot.wait(20)
     assert dog.late == []
 
@@ -124,7 +124,7 @@ class _Ended:
 def test_what_a_late_function_holds_is_not_kept_alive(
     qtbot: QtBot, dog: Watchdog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(linecache, "checkcache", lambda *_: time.sleep(0.3))  # telling a stack takes as long as it may
+    monkeypatch.setattr(linecache, "checkcache", lambda *_: time.sleep(0.5))  # telling a stack takes as long as it may
     by: list[int] = []
 
     def paint() -> None:
