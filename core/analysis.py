@@ -3,7 +3,7 @@
 Read `analyse` and `_analyse_span` as a table of contents; each step is a module of its own.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -39,7 +39,7 @@ from core.results import (
 from core.samples import FloatArray
 from core.session import Patient, Recording, RecordingKind, Session
 from core.signal.clock_drift import about_clocks, clock_drifts
-from core.signal.reception import receptions
+from core.signal.reception import Pause, receptions
 from core.signal.robust import robust_sd
 from core.signal.sensors import SensorTracks
 from core.span import JointAnalysis, SpanAnalysis
@@ -104,7 +104,7 @@ def analyse(
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
         tracks, noticed = tracks_of_kind(session, span, quality.unusable)
-        by_walk, analysed, of_span = _analyse_span(session, tracks, method, tau_s, steps)
+        by_walk, analysed, of_span = _analyse_span(session, tracks, quality.pauses, method, tau_s, steps)
         calibrations += by_walk
         recordings += analysed
         findings += [*noticed, *of_span]
@@ -125,13 +125,18 @@ def analyse(
 
 
 def _analyse_span(
-    session: Session, tracks: SensorTracks, method: Method, tau_s: float, steps: "_Steps"
+    session: Session,
+    tracks: SensorTracks,
+    pauses: Mapping[str, Sequence[Pause]],
+    method: Method,
+    tau_s: float,
+    steps: "_Steps",
 ) -> tuple[list[Calibration], list[RecordingAnalysis], list[Finding]]:
     """Everything of one span: what every joint is, and the angles and gait of what moves."""
     doubted, drifts = doubted_labels(tracks), clock_drifts(tracks)
     findings = [*doubted.findings, *about_clocks(drifts)]
-    span = SpanAnalysis(tracks, _bases(tracks), doubted.sites, drifts)
-    steps.expect(len(set(span.bases.values())) + len(span.bases))
+    span = SpanAnalysis(tracks, _bases(tracks), pauses, doubted.sites, drifts)
+    steps.expect(len(set(span.bases.values())) + len(span.bases) + len(span.moving))
     _identify(span, method, tau_s, steps)
     findings += _find_lags(span)
     span.hips = find_hips(tracks)
@@ -146,8 +151,10 @@ def _analyse_span(
     findings += _find_slips(span, by_walk)
     recordings: list[RecordingAnalysis] = []
     parts = AxesOfParts(span)
+    ringing_rad_s = {joint: span.ringing_rad_s(joint) for joint in LEG_JOINTS}
     for recording in span.moving:
-        analysed = _recording(span, recording, parts)
+        steps.tick(recording.name)
+        analysed = _recording(span, recording, parts, ringing_rad_s)
         recordings.append(analysed)
         findings += [*about_angles(analysed), *about_turns(analysed)]
         findings += about_walk(analysed, {side: site_of_events(tracks, recording, side) for side in analysed.gait})
@@ -256,15 +263,23 @@ def _by_walk(span: SpanAnalysis) -> list[Calibration]:
     return [*([Calibration((), alone)] if alone else []), *by_walk]
 
 
-def _recording(span: SpanAnalysis, recording: Recording, parts: AxesOfParts) -> RecordingAnalysis:
+def _recording(
+    span: SpanAnalysis, recording: Recording, parts: AxesOfParts, ringing_rad_s: Mapping[Joint, float | None]
+) -> RecordingAnalysis:
     """Angles and gait of one recording, and what of them may be stated."""
     tracks, name, is_walk = span.tracks, recording.name, recording.kind is RecordingKind.WALKING
     found, time_s = span.joints_in(recording), _clock_of(span.tracks, recording)
-    joints = {j: _angle(one.calibration, one.twists[name], span.ringing_rad_s(j)) for j, one in found.items()}
+    joints: dict[Joint, JointAngle] = {}
+    leaning: dict[Site, FloatArray] = {}
+    for joint, one in found.items():
+        measured = one.twists.pop(name)  # of hours, no second copy is held
+        joints[joint] = _angle(one.calibration, measured, ringing_rad_s[joint])
+        if is_walk and joint.is_knee:
+            leaning |= _inclinations(tracks, one.calibration, measured)
     test = recording.test if is_walk else None
     gait: dict[Side, SideGait] = {}
     if is_walk and (test is None or DEFINITIONS[test.protocol].is_walked):
-        gait = _gait(span, recording, time_s, joints)
+        gait = _gait(span, recording, time_s, joints, leaning)
     nominal_hz = {site: info.rate_hz for site, info in tracks.session.sensors.items()}
     offsets_s = {site: span.offset_s(recording, site) for site in recording.imu if tracks.is_usable(recording, site)}
     analysed = RecordingAnalysis(
@@ -274,7 +289,7 @@ def _recording(span: SpanAnalysis, recording: Recording, parts: AxesOfParts) -> 
         time_s=time_s,
         joints=joints,
         gait=gait,
-        received=receptions(recording, nominal_hz, offsets_s),
+        received=receptions(recording, nominal_hz, span.pauses[name], offsets_s),
         slipped_from_s={side: span.slipped_s[name, side] for side in Side if (name, side) in span.slipped_s},
         drifting_percent={site: percent for (walk, site), percent in span.drifts_percent.items() if walk == name},
         doubted_sites=span.doubted_sites,
@@ -288,15 +303,15 @@ def _recording(span: SpanAnalysis, recording: Recording, parts: AxesOfParts) -> 
 
 
 def _gait(
-    span: SpanAnalysis, recording: Recording, time_s: FloatArray, joints: dict[Joint, JointAngle]
+    span: SpanAnalysis,
+    recording: Recording,
+    time_s: FloatArray,
+    joints: Mapping[Joint, JointAngle],
+    leaning: Mapping[Site, FloatArray],
 ) -> dict[Side, SideGait]:
     """Both sides' gait, without the strides of a side after its strap slipped."""
     sites = {side: site_of_events(span.tracks, recording, side) or Site(f"{side}_{Segment.SHANK}") for side in Side}
     offsets_s = {side: span.offset_s(recording, site) for side, site in sites.items()}
-    leaning: dict[Site, FloatArray] = {}
-    for joint, one in span.joints_in(recording).items():
-        if joint.is_knee:
-            leaning |= _inclinations(span.tracks, one.calibration, one.twists[recording.name])
     gait = gait_in(span.tracks, recording, time_s, joints, offsets_s, leaning)
     slipped = {side: span.slipped_s[recording.name, side] for side in gait if (recording.name, side) in span.slipped_s}
     for side, from_s in slipped.items():
@@ -323,7 +338,14 @@ def _find_slips(span: SpanAnalysis, calibrations: list[Calibration]) -> list[Fin
     findings = []
     for calibration in calibrations:
         walks = [walk for walk in span.walks if walk.name in calibration.walks]
-        for walk, slip in slips_in_walks(span.tracks, walks, calibration.joints, span.lag_s):
+        if not walks:
+            continue
+        turns = {
+            joint: {name: twist.strap_turns for name, twist in one.twists.items()}
+            for joint, one in span.joints_in(walks[0]).items()
+        }
+        is_published = any(one.method is Method.PUBLISHED for one in calibration.joints.values())
+        for walk, slip in slips_in_walks(span.tracks, walks, turns, are_axes_published=is_published):
             if (walk.name, slip.site.side) in span.slipped_s:
                 continue  # an earlier slip, reported already
             numbers = {"from_s": round(float(slip.from_s), 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}

@@ -1,6 +1,10 @@
-"""Body parts that carry sensors, and the joints between them."""
+"""Body parts that carry sensors, and the joints between them.
+
+What follows from a name is found out once for each: live work asks for it hundreds of times a second.
+"""
 
 from enum import StrEnum
+from functools import cached_property
 
 
 class Side(StrEnum):
@@ -38,16 +42,16 @@ class Site(StrEnum):
     RIGHT_FOOT = "right_foot"
     PELVIS = "pelvis"
 
-    @property
+    @cached_property
     def side(self) -> Side | None:
         return None if self.value == "pelvis" else self.leg_side
 
-    @property
+    @cached_property
     def leg_side(self) -> Side:
         """The side of a site of the leg; ValueError of the pelvis."""
         return Side(self.value.split("_")[0])
 
-    @property
+    @cached_property
     def segment(self) -> Segment:
         return Segment(self.value.split("_")[-1])
 
@@ -73,27 +77,27 @@ class Joint(StrEnum):
     LEFT_HIP = "left_hip"
     RIGHT_HIP = "right_hip"
 
-    @property
+    @cached_property
     def side(self) -> Side:
         return Side(self.value.split("_")[0])
 
-    @property
+    @cached_property
     def kind(self) -> JointKind:
         return JointKind(self.value.split("_")[1])
 
-    @property
+    @cached_property
     def is_knee(self) -> bool:
         return self.kind is JointKind.KNEE
 
-    @property
+    @cached_property
     def is_hip(self) -> bool:
         return self.kind is JointKind.HIP
 
-    @property
+    @cached_property
     def proximal(self) -> Site:
         return Site.PELVIS if self.is_hip else Site(f"{self.side}_{'thigh' if self.is_knee else 'shank'}")
 
-    @property
+    @cached_property
     def distal(self) -> Site:
         return Site(f"{self.side}_{'thigh' if self.is_hip else 'shank' if self.is_knee else 'foot'}")
 

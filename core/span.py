@@ -3,6 +3,7 @@
 `core.analysis` fills it step by step; a step reads what those before it have found.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,6 +16,7 @@ from core.calibration.validity import Basis
 from core.hip.analysis import NO_HIPS, HipsOfSpan
 from core.results import JointCalibration
 from core.session import Recording, RecordingKind
+from core.signal.reception import Pause
 from core.signal.sensors import SensorTracks
 
 
@@ -22,7 +24,7 @@ from core.signal.sensors import SensorTracks
 class JointAnalysis:
     """One joint as the same recordings calibrate it, once it is identified.
 
-    `lags_s`, `twists`: by the name of the recording that the joint moves in.
+    `lags_s`, `twists`: by the name of the recording that the joint moves in; a twist until it is turned to an angle.
     `motion_sign`: as the motion gives it, since the user's word on a knee is none on its ankle.
     """
 
@@ -44,6 +46,7 @@ class SpanAnalysis:
 
     `bases`: what calibrates each joint in each recording, by the recording's name; also where nothing could be
     identified.
+    `pauses`: when no sensor was received, by the recording's name.
     `doubted_sites`, `drifts_percent`: sites whose sensors seem exchanged; how much faster than its leg's a clock runs,
     by the walk's name and site.
     `joints`: those that were identified, knees first, since they help their ankles.
@@ -52,6 +55,7 @@ class SpanAnalysis:
 
     tracks: SensorTracks
     bases: dict[tuple[str, Joint], Basis]
+    pauses: Mapping[str, Sequence[Pause]]
     doubted_sites: frozenset[Site]
     drifts_percent: dict[tuple[str, Site], float]
     joints: dict[Basis, JointAnalysis] = field(default_factory=dict)

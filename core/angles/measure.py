@@ -12,11 +12,12 @@ from core.angles.hinge_angle import hinge_angle, hinge_angle_and_sd
 from core.angles.twist import off_axis_rate, ringing, twist
 from core.body import Joint
 from core.calibration.heading import heading_over
+from core.calibration.strap import Turns, joined_turns, turns_over
 from core.calibration.zero import within_half_a_turn
 from core.gait.inclination import lean_about
 from core.published.angles import angle_from_orientations, published_angle
 from core.samples import FloatArray
-from core.session import Recording
+from core.session import Recording, RecordingKind
 from core.signal.orientation import oriented_to_north
 from core.signal.pair import OrientedTrack, Pair, is_turning, pair_up
 from core.signal.rotations import wrap
@@ -55,6 +56,7 @@ class Twist:
     that starts again amid a movement has to find the vertical first. The others are thinned samples (m, ...) while the
     joint's segments move: the angle, and each sensor's own rate about its own axis; and, of those of them at which they
     turn (`is_turning`), all of the off-axis rate and what of it is above 3 Hz.
+    `strap_turns` are those of a walk's windows; of another recording there are none.
     `lean_1_rad`, `lean_2_rad` (n,): how both segments stand to the vertical, as `lean_about` has it; of knees only.
     """
 
@@ -67,6 +69,7 @@ class Twist:
     moving_ringing: FloatArray
     moving_rate_1: FloatArray
     moving_rate_2: FloatArray
+    strap_turns: Turns
     lean_1_rad: FloatArray | None = None
     lean_2_rad: FloatArray | None = None
 
@@ -103,6 +106,7 @@ def measure(
     names = ("twist", "published", "orientation", "added_sd", *(("lean_1", "lean_2") if joint.is_knee else ()))
     angles = {name: np.full(len(time_s), np.nan) for name in names}
     witnesses: list[tuple[FloatArray, ...]] = []
+    turns: list[Turns] = []
     j1, j2 = geometry.axis_1, geometry.axis_2
     for block in tracks.blocks(recording):
         pairs = [p for p in pairs_of(tracks, recording, joint, block, geometry.lag_s) if is_anchored(p)]
@@ -129,6 +133,8 @@ def measure(
             off_axis = off_axis_rate(pair, j1, heading)
             rung, rates = ringing(off_axis, pair.step_s)[turning], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
             witnesses.append((found["twist"][chosen], off_axis[turning], rung, *rates))
+            if recording.kind is RecordingKind.WALKING:
+                turns.append(turns_over(pair, j1, j2).between(block.core_from_s, block.core_to_s))
         for pair in _north_pairs(tracks, recording, joint, block, geometry.lag_s):
             values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
             place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
@@ -145,6 +151,7 @@ def measure(
         moving_ringing=joined[2] if joined else np.empty((0, 2)),
         moving_rate_1=joined[3] if joined else np.empty(0),
         moving_rate_2=joined[4] if joined else np.empty(0),
+        strap_turns=joined_turns(turns),
         lean_1_rad=angles.get("lean_1"),
         lean_2_rad=angles.get("lean_2"),
     )

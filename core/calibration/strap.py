@@ -5,16 +5,14 @@ so alike in both sensors of the joint. What one of them has turned against the o
 three degrees, and jumps when a strap slips.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.angles.measure import pairs_of
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration.joint_axis import loss_and_weights, residuals
 from core.calibration.rest import rest_of
-from core.results import JointCalibration, Method
 from core.samples import FloatArray, ImuBlock, IntArray
 from core.session import Recording
 from core.signal.datasets import Datasets, gather
@@ -49,6 +47,18 @@ class Turns:
     time_s: FloatArray
     turn_rad: FloatArray
 
+    def between(self, from_s: float, to_s: float) -> "Turns":
+        """The windows that start from the one time on and before the other."""
+        is_meant = (self.time_s >= from_s) & (self.time_s < to_s)
+        return Turns(self.time_s[is_meant], self.turn_rad[is_meant])
+
+
+def joined_turns(parts: Sequence[Turns]) -> Turns:
+    """Turns of one joint, laid end to end."""
+    if not parts:
+        return Turns(np.empty(0), np.empty(0))
+    return Turns(np.concatenate([part.time_s for part in parts]), np.concatenate([part.turn_rad for part in parts]))
+
 
 @dataclass(frozen=True, slots=True)
 class Slip:
@@ -72,7 +82,7 @@ def turns_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> Turns:
     windows = windows[counts >= MIN_MOVING_S * min(SAMPLES_PER_S, 1 / pair.step_s)]
     is_used = np.isin(number, windows)
     if not len(windows):
-        return Turns(np.empty(0), np.empty(0))
+        return joined_turns(())
     data = gather((pair,), [index[is_used]])
     first = np.searchsorted(number[is_used], windows)
     return Turns(pair.time_s[0] + WINDOW_S * windows, _turns(data, first, axis_1, axis_2))
@@ -135,29 +145,27 @@ def slips(turns: Mapping[Joint, Turns], since_calibration_rad: float = MIN_SLIP_
 def slips_in_walks(
     tracks: SensorTracks,
     walks: Sequence[Recording],
-    calibration: Mapping[Joint, JointCalibration],
-    lag_s: Callable[[str, Joint], float],
+    turns_of: Mapping[Joint, Mapping[str, Turns]],
+    *,
+    are_axes_published: bool,
 ) -> list[tuple[Recording, Slip]]:
-    """Find slips in walks of one calibration, in order of time on each walk's own clock."""
+    """Find slips in walks of one calibration, in order of time on each walk's own clock.
+
+    `turns_of` has each joint's turns by the name of the walk in which it was measured.
+    """
     starts_s = np.cumsum([0.0, *(last - first for first, last in map(tracks.span_of, walks))])
     turns = {}
-    for joint, found in calibration.items():
+    for joint, measured in turns_of.items():
         parts = []
         for walk, start_s in zip(walks, starts_s[:-1], strict=True):
-            if _is_in_place(walk) or not tracks.is_usable(walk, joint.proximal, joint.distal):
-                continue
-            offset_s = start_s - tracks.span_of(walk)[0]  # the walks are laid end to end
-            for block in tracks.blocks(walk):
-                for pair in pairs_of(tracks, walk, joint, block, lag_s(walk.name, joint)):
-                    part = turns_over(pair, found.axis_proximal, found.axis_distal)
-                    is_mine = (part.time_s >= block.core_from_s) & (part.time_s < block.core_to_s)
-                    parts.append(Turns(part.time_s[is_mine] + offset_s, part.turn_rad[is_mine]))
+            if walk.name in measured and not _is_in_place(walk):
+                offset_s = start_s - tracks.span_of(walk)[0]  # the walks are laid end to end
+                parts.append(Turns(measured[walk.name].time_s + offset_s, measured[walk.name].turn_rad))
         if parts:
-            turns[joint] = Turns(*(np.concatenate([getattr(p, name) for p in parts]) for name in Turns.__slots__))
+            turns[joint] = joined_turns(parts)
     located = []
     # axes as published lie tens of degrees off in some walks, which is no slip
-    is_published = any(found.method is Method.PUBLISHED for found in calibration.values())
-    for slip in slips(turns, np.inf if is_published else MIN_SLIP_SINCE_CALIBRATION_RAD):
+    for slip in slips(turns, np.inf if are_axes_published else MIN_SLIP_SINCE_CALIBRATION_RAD):
         k = int(np.searchsorted(starts_s[1:-1], slip.from_s, side="right"))
         from_s = slip.from_s - starts_s[k] + tracks.span_of(walks[k])[0]
         found_slip = replace(slip, from_s=from_s)

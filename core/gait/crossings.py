@@ -20,7 +20,8 @@ class Onset:
 def crossing(signal: FloatArray, first: int, last: int, level: float, which: int = 0) -> float:
     """Give the fractional index in first..last where `signal` (n,) first (`which` -1: last) passes `level`; or NaN."""
     above = signal[first : last + 1] - level
-    passes = np.flatnonzero((above[1:] > 0) != (above[:-1] > 0))
+    is_positive = above > 0
+    passes = (is_positive[1:] != is_positive[:-1]).nonzero()[0]
     if not len(passes):
         return float("nan")
     k = int(passes[which])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.samples import FloatArray
-from core.signal.robust import robust_sd
+from core.signal.robust import median_of, robust_sd
 from core.signal.rotations import wrap
 
 MEMORY = 100  # looks whose scatter shows what a look is worth
@@ -105,7 +105,7 @@ class SlowDrift:
         if len(self._errors) >= MIN_LOOKS:
             errors = np.array(self._errors)
             # about their median: an angle that has been lost must not make its looks worthless
-            scale = max(robust_sd(errors - np.median(errors)), self._looks.min_scale)
+            scale = max(robust_sd(errors - median_of(errors)), self._looks.min_scale)
         variance = (scale / length) ** 2
         robust = (1 + error_rad**2 / (variance + angle + unsure_rad**2)) ** 0.5
         variance = (variance * robust + unsure_rad**2) * max(1.0, self._looks.correlation_s / duration_s)

@@ -98,7 +98,7 @@ class Pairing:
         if last < 0:
             none = np.zeros(len(one), dtype=np.bool_)
             return PairedSamples(one.tick, one.time_s, one.signals, np.zeros((len(one), 10)), none, none), 0
-        at = np.searchsorted(two.tick, left)
+        at = two.tick.searchsorted(left)
         used, at = int(at[-1]), np.minimum(at, last)
         if is_whole.all():
             is_paired, distal, nearest = two.tick[at] == left, two.signals[at], at

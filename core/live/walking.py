@@ -121,7 +121,7 @@ class LiveWalk:
         }
         self._straps = {joint: _StrapWatch(calibration[joint], sensors[joint.proximal].step_s) for joint in known}
         self._feet = {
-            site.leg_side: _LiveFoot(_pitch_axis(site.leg_side, calibration), _clock_offset_s(site.leg_side, lags_s))
+            site: _LiveFoot(_pitch_axis(site.leg_side, calibration), _clock_offset_s(site.leg_side, lags_s))
             for site in sensors
             if site.segment is Segment.FOOT
         }
@@ -143,8 +143,8 @@ class LiveWalk:
             known = {slip.site for slip in self._slips}
             self._slips += tuple(slip for slip in found if slip.site not in known)
         feet = {
-            side: foot.update(turned.get(Site(f"{side}_{Segment.FOOT}"), NOTHING), joints.get(knee_of(side)))
-            for side, foot in self._feet.items()
+            site.leg_side: foot.update(turned.get(site, NOTHING), joints.get(knee_of(site.leg_side)))
+            for site, foot in self._feet.items()
         }
         return WalkingState(joints, feet, self._slips, self._sensors.corrections, turned)
 

@@ -9,6 +9,7 @@ from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import convolve1d
 
 from core.samples import FloatArray, IntArray
 from core.signal.joint_force import JointForce
@@ -114,7 +115,7 @@ def _smooth_terms(force: JointForce, time_s: FloatArray) -> FloatArray:
     near = slice(first, int(middle[-1]) + 2 * half + 3)
     is_received = force.received[near, None] > MIN_SHARE
     rows = np.concatenate([np.where(is_received, force.terms[near].reshape(-1, 21), 0.0), is_received], axis=1)
-    smooth = at_positions(_running_mean(_running_mean(rows, half), half), middle - first - 2 * half)
+    smooth = at_positions(_mean_of_means(rows, half), middle - first - 2 * half)
     share = smooth[:, 21:]
     return np.where(share > MIN_SHARE, smooth[:, :21] / np.maximum(share, MIN_SHARE), np.nan)
 
@@ -123,7 +124,8 @@ def _half_width(step_s: float) -> int:
     return max(1, round(0.5 * MEAN_S / step_s))
 
 
-def _running_mean(values: FloatArray, half: int) -> FloatArray:
-    """Means (n - 2 half, k) of rows (n, k) and the `half` rows on each side of each."""
-    total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
-    return (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
+def _mean_of_means(values: FloatArray, half: int) -> FloatArray:
+    """Means (n - 4 half, k) of the means of rows (n, k) and the `half` rows on each side of each."""
+    width = 2 * half + 1
+    both = np.convolve(np.ones(width), np.ones(width)) / width**2
+    return np.asarray(convolve1d(values, both, axis=0)[2 * half : len(values) - 2 * half])

@@ -64,7 +64,7 @@ def _count(received: ImuBlock, whole: ImuBlock, rate_hz: float | None, span_s: t
     time_s = received.time_s
     edges_s = [float(time_s[0]) - span_s[0], span_s[1] - float(time_s[-1])]
     late_s = [edge_s for edge_s in edges_s if edge_s > EDGE_S]
-    share = 1.0 - lost_percent(whole, rate_hz) / 100.0
+    share = 1.0 - lost_percent(whole.time_s, time_s, rate_hz) / 100.0
     within = len(time_s) / share if share > 0.0 else len(time_s)
     expected = round(within + sum(late_s) * (rate_hz or 1.0 / nominal_step_s(time_s)))
     gaps_s = gaps_of(time_s)

@@ -1,12 +1,12 @@
 """What one recording holds of each sensor: gaps, pauses, samples at the end of the range, the rate they came at."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from core.body import Site
-from core.samples import FloatArray, ImuBlock
+from core.samples import BoolArray, FloatArray, ImuBlock
 from core.session import Recording
 from core.signal.clipping import clipped_forces, clipped_rates
 from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_received, nominal_step_s
@@ -39,24 +39,30 @@ class Reception:
 
 
 def receptions(
-    recording: Recording, nominal_hz: Mapping[Site, float | None], offsets_s: Mapping[Site, float]
+    recording: Recording,
+    nominal_hz: Mapping[Site, float | None],
+    pauses: Sequence[Pause],
+    offsets_s: Mapping[Site, float],
 ) -> dict[Site, Reception]:
     """Give what a recording holds of the sensors in `offsets_s`, which bring each clock to the recording's."""
-    pauses = pauses_of(recording)
     return {
         site: _reception(recording.imu[site], nominal_hz.get(site), pauses, offset_s)
         for site, offset_s in offsets_s.items()
     }
 
 
+def _is_received(block: ImuBlock) -> BoolArray:
+    return is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)
+
+
 def _reception(block: ImuBlock, nominal_hz: float | None, pauses: Sequence[Pause], offset_s: float) -> Reception:
-    is_there = is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)
+    is_there = _is_received(block)
     received_s = block.time_s[is_there]
     if len(received_s) < MIN_STRETCH_SAMPLES:
         return Reception(lost_percent=ALL_LOST_PERCENT)
     at_s = received_s + offset_s
     return Reception(
-        lost_percent=lost_percent(block, nominal_hz, pauses),
+        lost_percent=lost_percent(block.time_s, received_s, nominal_hz, pauses),
         gaps_s=gaps_of(received_s) + offset_s,
         span_s=(float(at_s[0]), float(at_s[-1])),
         clipped_rates_s=at_s[clipped_rates(block.gyr_rad_s[is_there]).any(axis=1)],
@@ -73,11 +79,10 @@ def gaps_of(received_s: FloatArray) -> FloatArray:
 
 def pauses_of(recording: Recording) -> list[Pause]:
     """When no sensor of a recording was received for longer than a stride takes."""
-    blocks = recording.imu.values()
-    return pauses_among([one.time_s[is_received(one.time_s, one.gyr_rad_s, one.acc_m_s2)] for one in blocks])
+    return pauses_among(block.time_s[_is_received(block)] for block in recording.imu.values())
 
 
-def pauses_among(received: Sequence[FloatArray]) -> list[Pause]:
+def pauses_among(received: Iterable[FloatArray]) -> list[Pause]:
     """As `pauses_of`, of the times (n,) at which samples of each sensor were received, on one clock."""
     common: list[Pause] | None = None
     for received_s in received:
@@ -107,15 +112,19 @@ def outside_of(pauses: Sequence[Pause], gaps_s: FloatArray) -> FloatArray:
     return np.asarray(left)
 
 
-def lost_percent(block: ImuBlock, nominal_hz: float | None = None, pauses: Sequence[Pause] = ()) -> float:
-    """Give the share of missing samples outside pauses, 100 where next to none came; no rate: by stamps alone."""
-    received_s = block.time_s[is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+def lost_percent(
+    time_s: FloatArray, received_s: FloatArray, nominal_hz: float | None = None, pauses: Sequence[Pause] = ()
+) -> float:
+    """Give the share of missing samples outside pauses, 100 where next to none came; no rate: by stamps alone.
+
+    `time_s`: of every row, those without a measurement included.
+    """
     if len(received_s) < MIN_STRETCH_SAMPLES:
         return ALL_LOST_PERCENT
     step_s = nominal_step_s(received_s)
     missing = float(np.sum(_missing_rows(received_s, step_s)))
     missing -= sum(max(round((last - first) / step_s) - 1, 0) for first, last in pauses)
-    missing += float(np.count_nonzero(block.time_s < received_s[0]) + np.count_nonzero(block.time_s > received_s[-1]))
+    missing += float(np.count_nonzero(time_s < received_s[0]) + np.count_nonzero(time_s > received_s[-1]))
     received = len(received_s) / (max(missing, 0.0) + len(received_s))
     came_at = rate_percent(received_s, nominal_hz)
     if came_at is not None and came_at < 100.0 - KEPT_RATE_PERCENT:

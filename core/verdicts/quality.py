@@ -1,7 +1,8 @@
 """Quality of the samples: every recording is looked at before anything is computed from it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain, islice
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
 from core.session import Recording, RecordingKind, Session
 from core.signal.clipping import clipped_forces, clipped_rates
-from core.signal.clock_jumps import jump_of, spans_of
+from core.signal.clock_jumps import Span, jump_of, spans_of
 from core.signal.pair import moving_mean
 from core.signal.reception import (
     KEPT_RATE_PERCENT,
@@ -56,10 +57,22 @@ MIN_STEP_NOT_S, MIN_STEP_US = 0.4, 400.0  # steps of what cannot be seconds: mil
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Findings, and which sites of which recordings cannot be used at all."""
+    """Findings, which sites of which recordings cannot be used at all, and each recording's pauses by its name."""
 
     findings: tuple[Finding, ...]
     unusable: frozenset[tuple[str, Site]]
+    pauses: Mapping[str, Sequence[Pause]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Outline:
+    """What a sensor is compared by with others, which may be too large to be held beside it.
+
+    `rows` (n,) stand for its first samples; `spans_s` are those without a long gap.
+    """
+
+    rows: IntArray
+    spans_s: list[Span]
 
 
 def look_at(session: Session) -> Quality:
@@ -68,17 +81,20 @@ def look_at(session: Session) -> Quality:
     unusable: set[tuple[str, Site]] = set()
     worn: dict[tuple[str, Site], str] = {}
     reversed_sensors: set[tuple[Site, str]] = set()
+    pauses_by_name: dict[str, list[Pause]] = {}
     for recording in session.recordings:
         if not recording.is_kept:
             findings.append(Finding("recording_discarded", Severity.INFO, recording.name))
             continue
         turns: dict[Site, Turn] = {}
-        pauses = pauses_of(recording)
+        outlines: dict[Site, _Outline] = {}
+        pauses = pauses_by_name[recording.name] = pauses_of(recording)
         for first, last in pauses:
             numbers = {"from_s": round(first, 1), "length_s": round(last - first, 1)}
             findings.append(Finding("pause", Severity.WARNING, recording.name, numbers))
         for site, block in recording.imu.items():
             worn[recording.name, site] = block.sensor
+            outlines[site] = _Outline(_distinct_rows(block), spans_of(block.time_s))
             where = f"{recording.name}, {site}"
             nominal_hz = session.sensors[site].rate_hz if site in session.sensors else None
             about = [
@@ -90,7 +106,12 @@ def look_at(session: Session) -> Quality:
                 unusable.add((recording.name, site))
             elif recording.kind is not RecordingKind.STANDING:
                 turns[site] = turn_about_vertical(block)
-        for sites, found in [*_same_data(recording), *_clock_offsets(recording), *_clock_jumps(recording)]:
+        of_several = (
+            _same_data(recording.name, outlines),
+            _clock_offsets(recording, outlines),
+            _clock_jumps(recording.name, outlines),
+        )
+        for sites, found in chain.from_iterable(of_several):
             findings.append(found)
             unusable.update((recording.name, site) for site in sites)
         for sites in reversed_sites(turns):
@@ -101,7 +122,7 @@ def look_at(session: Session) -> Quality:
     # a sensor that is so once was so all the time, whether it turned far enough to show it or not
     unusable.update(key for key, sensor in worn.items() if (key[1], sensor) in reversed_sensors)
     findings.extend(_missing_sites(session))
-    return Quality(tuple(findings), frozenset(unusable))
+    return Quality(tuple(findings), frozenset(unusable), pauses_by_name)
 
 
 About = tuple[str, Severity, dict[str, float | int | str]]
@@ -134,9 +155,10 @@ def _about_block(
         return [*about, ("stuck_throughout", Severity.GRAVE, {})]
     if stuck > 0.0:
         about.append(("stuck", Severity.WARNING, {"percent": round(stuck, 1)}))
-    step_s = nominal_step_s(block.time_s[received])
-    about += _about_gaps(block.time_s[received], lost_percent(block, pauses=pauses), pauses)
-    about += _about_rate(block.time_s[received], nominal_hz)
+    received_s = block.time_s[received]
+    step_s = nominal_step_s(received_s)
+    about += _about_gaps(received_s, lost_percent(block.time_s, received_s, pauses=pauses), pauses)
+    about += _about_rate(received_s, nominal_hz)
     rate_hz = 1 / step_s
     if rate_hz < MIN_RATE_HZ:
         about.append(("low_rate", Severity.WARNING, {"rate_hz": round(rate_hz, 1)}))
@@ -214,18 +236,18 @@ def _clipped_percent(block: ImuBlock, received: BoolArray) -> float:
     return 100 * max(float(column.mean()) for end in ends for column in (*end.T, np.zeros(1)))
 
 
-def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
+AboutSites = list[tuple[tuple[Site, ...], Finding]]
+
+
+def _same_data(name: str, outlines: Mapping[Site, _Outline]) -> AboutSites:
     """Sensors whose rows in motion agree to the last digit: one is a copy of the other."""
     # at rest coarse ones agree, too
-    found: list[tuple[tuple[Site, ...], Finding]] = []
-    rows: dict[Site, IntArray] = {}
-    for site, block in recording.imu.items():
-        mine = rows[site] = _distinct_rows(block)
-        for other, theirs in rows.items():
-            shared = 0 if other is site else len(np.intersect1d(mine, theirs, assume_unique=True))
-            if shared > 0.5 * max(min(len(mine), len(theirs)), MIN_STRETCH_SAMPLES):
-                where = f"{recording.name}, {other}, {site}"
-                found.append(((other, site), Finding("same_data", Severity.GRAVE, where)))
+    found: AboutSites = []
+    for k, (site, mine) in enumerate(outlines.items()):
+        for other, theirs in islice(outlines.items(), k):
+            shared = len(np.intersect1d(mine.rows, theirs.rows, assume_unique=True))
+            if shared > 0.5 * max(min(len(mine.rows), len(theirs.rows)), MIN_STRETCH_SAMPLES):
+                found.append(((other, site), Finding("same_data", Severity.GRAVE, f"{name}, {other}, {site}")))
     return found
 
 
@@ -241,15 +263,15 @@ def _distinct_rows(block: ImuBlock) -> IntArray:
     return np.unique(rows[np.linalg.norm(signals[:, :3], axis=1) > MOVING_RAD_S])
 
 
-def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
+def _clock_offsets(recording: Recording, outlines: Mapping[Site, _Outline]) -> AboutSites:
     """A site whose start and end both lie equally far from the others' has a clock of its own."""
-    spans = {s: (float(b.time_s[0]), float(b.time_s[-1])) for s, b in recording.imu.items() if len(b)}
+    spans = {site: (one.spans_s[0][0], one.spans_s[-1][1]) for site, one in outlines.items() if one.spans_s}
     if len(spans) < 2:
         return []
     start, end = (float(np.median([span[k] for span in spans.values()])) for k in (0, 1))
     if len(spans) == 2:  # two clocks that disagree: the proximal one is taken as right
         start, end = next(iter(spans.values()))
-    found: list[tuple[tuple[Site, ...], Finding]] = []
+    found: AboutSites = []
     for site, (first, last) in spans.items():
         offset_s = 0.5 * (first - start + last - end)
         is_shifted = abs(offset_s) > CLOCK_OFFSET_S and abs((last - end) - (first - start)) < CLOCK_AGREEMENT_S
@@ -260,14 +282,15 @@ def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding
     return found
 
 
-def _clock_jumps(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
-    spans = {site: spans_of(recording.imu[site].time_s) for site in recording.imu}
-    found: list[tuple[tuple[Site, ...], Finding]] = []
-    for site, own in spans.items():
-        jump = jump_of(own, [other for at, other in spans.items() if at is not site and other])
+def _clock_jumps(name: str, outlines: Mapping[Site, _Outline]) -> AboutSites:
+    found: AboutSites = []
+    for site, own in outlines.items():
+        jump = jump_of(
+            own.spans_s, [other.spans_s for at, other in outlines.items() if at is not site and other.spans_s]
+        )
         if jump is not None:
             numbers = {"jump_s": round(jump.by_s, 2), "after_s": round(jump.after_s, 2)}
-            found.append(((site,), Finding("clock_jumps", Severity.GRAVE, f"{recording.name}, {site}", numbers)))
+            found.append(((site,), Finding("clock_jumps", Severity.GRAVE, f"{name}, {site}", numbers)))
     return found
 
 

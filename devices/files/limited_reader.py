@@ -6,9 +6,8 @@ ended: a file that takes too much memory or time, or that ends its reader, is re
 
 import contextlib
 import logging
-import os
+import math
 import signal
-import subprocess
 import sys
 import threading
 import weakref
@@ -37,7 +36,9 @@ from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
 from devices.files.table_choices import NOTHING_STATED, StatedChoices, TableChoices, TablePreview
 from devices.files.trial import PROGRAMS, Gathered, ImportedTrial
+from devices.files.video_file import MOST_FRAMES, MOST_VIDEO_BYTES, PIECE_S, VideoPiece, piece_from
 from devices.other_packages import Offer
+from devices.own_process import Process, end_process, start_process
 
 FILES_EACH = 500
 MEMORY_BYTES = 4 * 1024**3  # half a gigabyte of text takes 1.9, most of it only reserved, the libraries 0.4 of them
@@ -45,8 +46,6 @@ MOST_FILE_BYTES = 1_000_000_000  # some twenty hours of one sensor at 100 Hz as 
 MOST_TOML_BYTES = 4_000_000  # a session of ours takes some kilobytes
 DEADLINE_S = 60.0  # for any file, with the start of the process
 BYTES_A_SECOND = 5_000_000.0  # beyond that; a busy old machine reads four times as fast
-# of the environment: of Windows, of libraries that were put elsewhere, and of compiled modules
-KEPT = frozenset({"SYSTEMROOT", "PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "PYTHONPYCACHEPREFIX", "PYTHONUTF8"})
 IS_LINUX: bool = sys.platform == "linux"
 WAIT_S = 0.05  # between two looks at whether somebody still waits
 
@@ -54,7 +53,6 @@ _log = logging.getLogger(__name__)
 T = TypeVar("T")
 
 Columns = list[list[Any]]
-Process = subprocess.Popen[bytes]
 Waiting = Callable[[], object]
 """Called while a file is being read. What it raises ends the reading."""
 
@@ -121,6 +119,7 @@ class LimitedReader:
         made_of: Callable[[Any, list[Array]], T],
         waiting: Waiting,
         most_bytes: int = MOST_FILE_BYTES,
+        most_s: float = math.inf,
     ) -> T:
         """Make an answer of what the process reports and of its arrays; raises FileRefusedError."""
         sizes = {path: path.stat().st_size for path in files if path.is_file()}
@@ -133,7 +132,7 @@ class LimitedReader:
                     size=round(size / 1e6),
                     most=round(most_bytes / 1e6),
                 )
-        deadline_s = DEADLINE_S + sum(sizes.values()) / BYTES_A_SECOND
+        deadline_s = min(most_s, DEADLINE_S + sum(sizes.values()) / BYTES_A_SECOND)
         asked = {**task, "where": where, "cwd": str(Path.cwd()), "processor_s": 2.0 * deadline_s}
         while not self._lock.acquire(timeout=WAIT_S):
             waiting()
@@ -172,47 +171,14 @@ class LimitedReader:
             return self.process
         self._end()
         self._files_left = FILES_EACH
-        process = start(self._memory_bytes)
-        self._ending = weakref.finalize(self, end, process)  # also when this program ends
+        process = start_process(child.__name__, child.WORD, str(self._memory_bytes))
+        self._ending = weakref.finalize(self, end_process, process)  # also when this program ends
         return process
 
     def _end(self) -> None:
         self.process = None
         if self._ending is not None:
             self._ending()
-
-
-def start(memory_bytes: int) -> Process:
-    """Start the limited process. It knows this program's modules, and takes none from the folder it is started in."""
-    paths = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)
-    return subprocess.Popen(
-        [*_this_program(), str(memory_bytes)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        env={**_environment(), "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
-        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-    )
-
-
-def _environment() -> dict[str, str]:
-    """What starting Python needs: the rest may hold a server's address, or keys."""
-    return {name: value for name, value in os.environ.items() if name in KEPT or name.startswith("OPENBLAS_")}
-
-
-def _this_program() -> list[str]:
-    if getattr(sys, "frozen", False):  # it has no Python beside it: `app.__main__`
-        return [sys.executable, child.WORD]
-    return [sys.executable, "-P", "-m", child.__name__]
-
-
-def end(process: Process) -> None:
-    """Kill a process and wait until it is gone."""
-    process.kill()
-    process.wait()
-    for stream in (process.stdin, process.stdout):
-        if stream is not None:
-            with contextlib.suppress(OSError):  # what could not be sent to it any more
-                stream.close()
 
 
 def _exchange(process: Process, asked: Details, deadline_s: float, waiting: Waiting) -> tuple[Details, list[Array]]:
@@ -318,6 +284,11 @@ class LimitedReading:
         """As `references.reading.read_reference` does."""
         task = {"task": child.REFERENCE, "path": str(path)}
         return self._reader.ask(task, [path], path.name, reference_from, self.waiting)
+
+    def read_video(self, path: Path, from_s: float, most_frames: int = MOST_FRAMES) -> VideoPiece:
+        """The frames of a video at `from_s` seconds and after it, at most `most_frames`; raises FileRefusedError."""
+        task = {"task": child.VIDEO, "path": str(path), "from_s": float(from_s), "most_frames": most_frames}
+        return self._reader.ask(task, [path], path.name, piece_from, self.waiting, MOST_VIDEO_BYTES, PIECE_S)
 
     def ask_parquet(self, path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
         """Answer as `parquet_questions.answer`: names, and columns per batch; raises FileRefusedError."""

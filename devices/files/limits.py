@@ -62,6 +62,13 @@ class _Ruleset(ctypes.Structure):
 
 def limit_this_process(memory_bytes: int) -> None:
     """Give up for good what reading does not need, before a second thread exists; unknown limits are left out."""
+    limit_resources(memory_bytes)
+    if sys.platform == "linux":
+        _forbid_writing()
+
+
+def limit_resources(memory_bytes: int) -> None:
+    """Limit the memory and the open files, and forbid every byte written to a file: but not on Windows."""
     if sys.platform == "win32":
         return
     for limit, most in (
@@ -72,8 +79,6 @@ def limit_this_process(memory_bytes: int) -> None:
     ):
         with contextlib.suppress(ValueError, OSError):
             resource.setrlimit(limit, (most, most))
-    if sys.platform == "linux":
-        _forbid_writing()
 
 
 def limit_processor_time(more_s: float) -> None:

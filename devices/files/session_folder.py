@@ -28,7 +28,8 @@ from devices.files.session_toml import (
 )
 from devices.files.site_files import ReadSite, Shelf, SiteFile, SitesOnDemand, sensor_changes, write_site
 
-HELD_BYTES = 500_000_000  # some nine hours of one sensor at 100 Hz as text; in memory half of that
+# in memory our own text takes half of what it takes in files, the shortest numbers four times as much
+HELD_BYTES = 500_000_000  # of files: two hours of six sensors at 100 Hz
 MOST_HELD_BYTES = 2_000_000_000  # in memory, where the files are not larger than `HELD_BYTES`
 SUFFIXES = (".csv", ".parquet")
 
