@@ -61,7 +61,7 @@ def session_for(sensors: int) -> WalkerSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Clip:
+class Excerpt:
     """A recording that is performed: its time 0 is at `start_ns` of the host's clock."""
 
     recording: Recording
@@ -88,7 +88,7 @@ class EmulatedPatient:
         self._standing = next(one for one in recordings if one.kind is RecordingKind.STANDING)
         self.clips = [self._clip(self._standing, now_ns())]
 
-    def ask(self, kind: RecordingKind) -> Clip:
+    def ask(self, kind: RecordingKind) -> Excerpt:
         """Perform the next recording of this kind, once the present one has ended; then stand."""
         required = next(one for one in self._waiting if one.kind is kind)
         self._waiting.remove(required)
@@ -129,9 +129,9 @@ class EmulatedPatient:
             return clip.recording, at_ns - clip.start_ns
         return self._standing, at_ns - clip.end_ns
 
-    def _clip(self, recording: Recording, start_ns: int) -> Clip:
+    def _clip(self, recording: Recording, start_ns: int) -> Excerpt:
         length_s = min((len(block) - 1) / FINE_HZ for block in recording.imu.values())
-        return Clip(recording, start_ns, start_ns + round(length_s * 1e9))
+        return Excerpt(recording, start_ns, start_ns + round(length_s * 1e9))
 
 
 class EmulatedSensor:

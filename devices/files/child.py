@@ -12,7 +12,7 @@ import sys
 from devices.files.limits import limit_this_process
 
 TOML, SITE, TRIAL, GATHER, REFERENCE = "toml", "site", "trial", "gather", "reference"
-QUESTION, PREVIEW, IMPORTER = "question", "preview", "importer"
+QUESTION, PREVIEW, IMPORTER, VIDEO = "question", "preview", "importer", "video"
 WORD = "read-foreign-files"  # the argument of a frozen program that is started as this process
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 

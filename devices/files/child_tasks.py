@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO
@@ -28,6 +29,7 @@ from devices.files.child import (
     TOML,
     TRIAL,
     UNFORESEEN,
+    VIDEO,
 )
 from devices.files.limits import forbid_reading, limit_processor_time
 from devices.files.other_formats import offered_formats, usable_format
@@ -38,6 +40,7 @@ from devices.files.site_files import read_site
 from devices.files.system_calls import refuse_system_calls
 from devices.files.table_choices import TableChoices
 from devices.files.trial import BESIDE_INERTIAL, registers_beside
+from devices.files.video_file import VideoPiece, details_of_piece
 from devices.other_packages import BrokenOfferError
 
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
@@ -101,6 +104,9 @@ def _load_for(task: str) -> None:
         import_module("devices.files.formats")
     if task == PREVIEW:
         import_module("devices.files.table_preview")
+    if task == VIDEO:
+        with suppress(ImportError):
+            import_module("devices.files.video_frames")
 
 
 def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
@@ -143,6 +149,8 @@ def _read(asked: Details, arrays: list[Array]) -> object:
     if task == SITE:
         site = Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         return details_of(read_site(*site), arrays)
+    if task == VIDEO:
+        return video_piece(asked, arrays)
     if task == QUESTION:
         from devices.files.parquet_questions import answer  # with the half of Arrow that only questions need
 
@@ -167,6 +175,18 @@ def _read(asked: Details, arrays: list[Array]) -> object:
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
     return details_of(read_trial(asked["format"], files, asked["rate_hz"], choices, splits=asked["splits"]), arrays)
+
+
+def video_piece(asked: Details, arrays: list[Array]) -> Details:
+    """Read a piece of a video; raises FileRefusedError, also where the library is missing."""
+    try:
+        frames = import_module("devices.files.video_frames")
+    except ImportError as problem:
+        raise FileRefusedError(
+            asked["where"], "videos cannot be read: a software library is missing", "Install gaitwright[video]"
+        ) from problem
+    piece: VideoPiece = frames.read_piece(Path(asked["path"]), asked["where"], asked["from_s"], asked["most_frames"])
+    return details_of_piece(piece, arrays)
 
 
 def _why_unusable(name: str, package: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from devices.files import limited_reader
+from devices import own_process
 from devices.files.limited_reader import LimitedReader
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the limits of Linux")
@@ -53,7 +53,7 @@ def tries(place, port, unix):
     yield "device", lambda: os.mknod(place / "new")
     yield "read beside", lambda: (place / "beside").read_bytes()
     yield "list", lambda: os.listdir(place)
-    yield "home", lambda: os.listdir(Path("~").expanduser())
+    yield "home", lambda: os.listdir(os.path.expanduser("~"))  # of a Path: RuntimeError where it is not known
     yield "passwords", lambda: Path("/etc/passwd").read_bytes()
     yield "priority", lambda: os.setpriority(os.PRIO_PROCESS, os.getppid(), 19)
     yield "limits of parent", lambda: __import__("resource").prlimit(os.getppid(), 7, (9, 9))
@@ -103,7 +103,7 @@ def test_what_runs_in_the_reading_process_can_open_its_own_file_and_do_nothing_e
         (tmp_path / name).write_text(name)
     before = {path.name: path.stat() for path in tmp_path.iterdir()}
     monkeypatch.setenv("DATABASE_OF_THE_CLINIC", "postgresql://gait:hunter2@clinic.example/gait")
-    monkeypatch.setattr(limited_reader, "_this_program", lambda: [sys.executable, "-P", "-c", INSIDE])
+    monkeypatch.setattr(own_process, "_this_program", lambda *_: [sys.executable, "-P", "-c", INSIDE])
     reader = LimitedReader()
     with socket.create_server(("127.0.0.1", 0)) as server:
         task = {"task": "toml", "path": str(tmp_path / "own"), "port": server.getsockname()[1], "unix": unix}

@@ -2,6 +2,7 @@
 
 import os
 import re
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,6 +23,8 @@ from devices.files import session_folder, site_files
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.site_files import NUMERIC
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 from tests.trials_of_files import refused
 
 COLUMNS = "time_s,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,gyr_x_rad_s,gyr_y_rad_s,gyr_z_rad_s"
@@ -34,6 +37,7 @@ kind = "walking"
 folder = "walk_1"
 """
 PLACE = "walk 1, left_thigh"
+MOST_READS = 9  # of one file, by the analysis of a session too large to be held; each takes seconds
 MakeSession = Callable[..., Path]
 
 some_text = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=12)
@@ -560,18 +564,24 @@ def test_nothing_is_written_outside_of_the_folder(tmp_path: Path, folder: str) -
 # --- large sessions
 
 
-def test_a_large_session_is_read_site_by_site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    imu = {site: simple_block(4 + i, site) for i, site in enumerate(LEG_SITES)}
-    write_session(Session((walk(imu),)), tmp_path / "session")
-    monkeypatch.setattr(session_folder, "HELD_BYTES", 10)
-    reads: list[Path] = []
+@pytest.fixture
+def reads(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """The files that are read, in order; every session counts as a large one."""
+    read: list[Path] = []
     read_site = site_files.SiteFile.read
 
-    def counting(file: site_files.SiteFile) -> object:
-        reads.append(file.path)
+    def noting(file: site_files.SiteFile) -> object:
+        read.append(file.path)
         return read_site(file)
 
-    monkeypatch.setattr(site_files.SiteFile, "read", counting)
+    monkeypatch.setattr(session_folder, "HELD_BYTES", 10)
+    monkeypatch.setattr(site_files.SiteFile, "read", noting)
+    return read
+
+
+def test_a_large_session_is_read_site_by_site(tmp_path: Path, reads: list[Path]) -> None:
+    imu = {site: simple_block(4 + i, site) for i, site in enumerate(LEG_SITES)}
+    write_session(Session((walk(imu),)), tmp_path / "session")
     found = read_session(tmp_path / "session").recordings[0]
     assert len(reads) == 6
     assert list(found.imu) == list(LEG_SITES)
@@ -583,6 +593,22 @@ def test_a_large_session_is_read_site_by_site(tmp_path: Path, monkeypatch: pytes
     assert len(reads) == 8  # two are kept
     write_session(Session((found,)), tmp_path / "session")
     assert_same_block(read_session(tmp_path / "session").recordings[0].imu[Site.LEFT_FOOT], imu[Site.LEFT_FOOT])
+
+
+def test_an_analysis_of_a_large_session_does_not_read_it_again_for_every_check(
+    tmp_path: Path, reads: list[Path]
+) -> None:
+    made = session_of(WalkerSettings(recordings=(Standing(), FreeMotion(), Walk("walk", strides=10))))
+    write_session(made, tmp_path / "session")
+    found = analyse(read_session(tmp_path / "session"))
+    assert set(found.recordings[-1].joints) == set(LEG_JOINTS)
+    assert max(Counter(path for path in reads if path.parent.name == "walk").values()) <= MOST_READS
+
+
+def test_no_session_of_the_shortest_numbers_that_is_held_has_more_samples_than_are_allowed() -> None:
+    row = "0,0,0,0,0,0,0\n"
+    in_memory = np.zeros(7).nbytes
+    assert session_folder.HELD_BYTES / len(row) * in_memory <= session_folder.MOST_HELD_BYTES
 
 
 def test_a_large_session_is_refused_at_once(make_session: MakeSession, monkeypatch: pytest.MonkeyPatch) -> None:

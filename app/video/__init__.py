@@ -1,0 +1,1 @@
+"""Video of a walk on the screen: the player, and what it is moved by."""
