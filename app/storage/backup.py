@@ -1,8 +1,9 @@
 """Second copy of the library, and the check that it opens.
 
 A backup is a folder with the database, the journals and the keys' file as the library has them, encrypted as they are
-there, and a list of their hashes. It is made while the library is in use. Only when everything was read back and
-checked does the folder get its name; whatever happens before leaves nothing.
+there, and a list of their hashes. Videos, which are many times as large, are among them where they are asked for; in a
+backup without them the database states so of each, and has no key of theirs. It is made while the library is in use.
+Only when everything was read back and checked does the folder get its name; whatever happens before leaves nothing.
 
 A clinic's own server is backed up with its own tools; this is for the library in a folder.
 
@@ -15,26 +16,26 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from contextlib import closing
 from dataclasses import dataclass, replace
 from errno import EIO
 from pathlib import Path
 
 import sqlcipher3.dbapi2 as sqlite
-from sqlalchemy import select
+from sqlalchemy import select, update
 
 from app.storage.audit import end_of_audit, verify_rows
 from app.storage.data_key import KeyMaterial
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.models import JournalRow
+from app.storage.database.models import ClipRow, JournalRow
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import JournalRefusedError, read_header
-from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
+from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX, VIDEOS
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, made_beside
-from app.storage.stored import Action, Checkpoint, LibraryError
+from app.storage.stored import Action, Checkpoint, ClipState, LibraryError
 from app.system.progress import Report, nobody
 from app.wording.translation import tr
 
@@ -43,7 +44,7 @@ LIST = "backup.json"
 NAME = "gaitwright-backup-"
 KEPT = datetime.timedelta(days=90)
 UNFINISHED_S = 86_400.0  # no copying takes so long
-OUR_FILES = re.compile(rf"{re.escape(KEYS)}|{RECORDINGS}/[0-9a-f-]{{36}}\.\d+{re.escape(SUFFIX)}")
+OUR_FILES = re.compile(rf"{re.escape(KEYS)}|(?:{RECORDINGS}|{VIDEOS})/[0-9a-f-]{{36}}\.\d+{re.escape(SUFFIX)}")
 PIECE_BYTES = 1 << 20
 SPARE_BYTES = 100_000_000  # left free on the disk of the backups
 PAGES = 256  # of the database, copied between two reports
@@ -55,6 +56,7 @@ class Backup:
 
     `files`, `bytes`: how much it holds.
     `faults`: what is wrong with it and was wrong with the library already: recordings that are missing or damaged.
+    `has_videos`: whether the library's videos are in it.
     """
 
     folder: Path
@@ -63,10 +65,16 @@ class Backup:
     files: int
     bytes: int
     faults: tuple[str, ...] = ()
+    has_videos: bool = False
 
 
 def back_up(
-    opened: OpenedLibrary, into: Path, report: Report = nobody, now: Callable[[], datetime.datetime] = now_utc
+    opened: OpenedLibrary,
+    into: Path,
+    report: Report = nobody,
+    now: Callable[[], datetime.datetime] = now_utc,
+    *,
+    with_videos: bool = False,
 ) -> Backup:
     """Copy the library into a new folder in `into` and check the copy; raises LibraryError."""
     if opened.shared is not None:
@@ -83,16 +91,20 @@ def back_up(
     opened.library.audit.note(Action.BACKUP, "library")
     with made_beside(folder) as beside:
         # the database first: what it knows of is then there, and what came later is found as left over
-        work = _Work(report, opened.folder / DATABASE, [opened.folder / KEYS, *opened.recordings.glob(f"*{SUFFIX}")])
+        folders = (RECORDINGS, VIDEOS) if with_videos else (RECORDINGS,)
+        work = _Work(report, opened.folder / DATABASE, [opened.folder / name for name in _files(opened, folders)])
         work.refuse_too_little_room(into)
         _copy_database(opened.folder, beside, opened.data_key, work)
-        journals = sorted(opened.recordings.glob(f"*{SUFFIX}"))
-        hashes = _copy_files(opened.folder, beside, [KEYS, *(f"{RECORDINGS}/{path.name}" for path in journals)], work)
+        if not with_videos:
+            _leave_out_videos(beside, opened.data_key)
+        hashes = _copy_files(opened.folder, beside, _files(opened, folders), work)
         checkpoint = _end_of_audit(beside, opened.data_key)
-        backup = Backup(folder, made_at, checkpoint, len(hashes) + 1, work.database_bytes + work.bytes)
+        size = work.database_bytes + work.bytes
+        backup = Backup(folder, made_at, checkpoint, len(hashes) + 1, size, has_videos=with_videos)
         _write_list(beside, backup, hashes)
         faults = _check(beside, opened.data_key, checkpoint, hashes, work)
-    opened.library.audit.note(Action.BACKUP, "library", is_checked=True, files=backup.files, faults=len(faults))
+    counted = {"files": backup.files, "faults": len(faults), "has_videos": with_videos}
+    opened.library.audit.note(Action.BACKUP, "library", is_checked=True, **counted)
     return replace(backup, faults=faults)
 
 
@@ -193,11 +205,33 @@ def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, wo
         target.dispose()  # the last one to close puts everything into the file itself
 
 
-def _copy_files(source: Path, target: Path, names: Iterable[str], work: _Work) -> dict[str, str]:
+def _files(opened: OpenedLibrary, folders: Iterable[str]) -> list[str]:
+    """What there is to copy besides the database, as names within the library."""
+    return [
+        KEYS,
+        *(f"{name}/{path.name}" for name in folders for path in sorted((opened.folder / name).glob(f"*{SUFFIX}"))),
+    ]
+
+
+def _leave_out_videos(folder: Path, data_key: KeyMaterial | None) -> None:
+    """State of each video in the copied database that this backup does not have it."""
+    with (
+        closing(Database(sqlite_engine(folder / DATABASE, data_key, creates=False))) as database,
+        database.writing() as session,
+    ):
+        left_out = update(ClipRow).where(ClipRow.state != ClipState.DISCARDED)
+        session.execute(left_out.values(state=ClipState.NOT_IN_BACKUP, wrapped_key=None))
+
+
+def _copy_files(source: Path, target: Path, names: Collection[str], work: _Work) -> dict[str, str]:
     """SHA-256 of each file that was copied."""
-    (target / RECORDINGS).mkdir(mode=0o700)
-    hashes = {name: _copy(source / name, target / name, work) for name in names}
-    sync_folder(target / RECORDINGS)
+    hashes, folders = {}, {target / RECORDINGS, *((target / name).parent for name in names)} - {target}
+    for folder in folders:
+        folder.mkdir(mode=0o700)
+    for name in names:
+        hashes[name] = _copy(source / name, target / name, work)
+    for folder in folders:
+        sync_folder(folder)
     return hashes
 
 
@@ -235,13 +269,17 @@ def _check(
             audited = verify_rows(session, derived_keys(session, data_key).audit, checkpoint)
             faults = [f"audit {fault.number} {fault.what}" for fault in audited.faults]
             for row in session.scalars(select(JournalRow).order_by(JournalRow.recording_id, JournalRow.segment)):
-                faults += _journal_faults(folder, row, data_key, hashes.get(f"{RECORDINGS}/{row.file}"))
+                faults += _journal_faults(folder / RECORDINGS, row, data_key, hashes.get(f"{RECORDINGS}/{row.file}"))
+            for clip in session.scalars(select(ClipRow).order_by(ClipRow.id)):
+                faults += _journal_faults(folder / VIDEOS, clip, data_key, hashes.get(f"{VIDEOS}/{clip.file}"))
     work.add(work.database_bytes, "backup")
     return tuple(faults)
 
 
-def _journal_faults(folder: Path, row: JournalRow, data_key: KeyMaterial | None, sha256: str | None) -> list[str]:
-    """What is wrong with one journal; one whose key was destroyed has nothing to be wrong."""
+def _journal_faults(
+    folder: Path, row: JournalRow | ClipRow, data_key: KeyMaterial | None, sha256: str | None
+) -> list[str]:
+    """What is wrong with one journal or video; one whose key was destroyed has nothing to be wrong."""
     if row.wrapped_key is None and data_key is not None:
         return []
     if sha256 is None:
@@ -249,7 +287,7 @@ def _journal_faults(folder: Path, row: JournalRow, data_key: KeyMaterial | None,
     if row.sha256 and row.sha256 != sha256:
         return [f"{row.file} is not what it was when it was closed"]
     try:
-        read_header(folder / RECORDINGS / row.file, row.wrapped_key).key(data_key, row.file)
+        read_header(folder / row.file, row.wrapped_key).key(data_key, row.file)
     except JournalRefusedError:
         return [f"{row.file} does not open"]
     return []
@@ -279,6 +317,7 @@ def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:
         "checkpoint": str(backup.checkpoint),
         "bytes": backup.bytes,
         "files": hashes,
+        "has_videos": backup.has_videos,
     }
     replace_file(folder / LIST, json.dumps(content, indent=1).encode())
 
@@ -294,7 +333,8 @@ def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
             datetime.datetime.fromisoformat(reported["made_at"]),
             Checkpoint.parsed(reported["checkpoint"]),
         )
-        return Backup(folder, made_at, checkpoint, len(hashes) + 1, int(reported["bytes"])), hashes
+        size, has_videos = int(reported["bytes"]), bool(reported.get("has_videos", False))  # earlier ones have none
+        return Backup(folder, made_at, checkpoint, len(hashes) + 1, size, has_videos=has_videos), hashes
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         remedy = tr("Choose a folder whose name starts with {name}").format(name=NAME)
         raise LibraryError("This version cannot read this folder as a backup", remedy) from None

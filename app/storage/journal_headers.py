@@ -1,4 +1,4 @@
-"""The keys in the journals' own headers, after a change of the library's data key (`app.storage.key_change`)."""
+"""The keys in the headers of journals and videos, after a change of the data key (`app.storage.key_change`)."""
 
 import os
 from pathlib import Path
@@ -6,21 +6,23 @@ from pathlib import Path
 from sqlalchemy import select
 
 from app.storage.database.engine import Database
-from app.storage.database.models import JournalRow, SettingRow
+from app.storage.database.models import ClipRow, JournalRow, SettingRow
 from app.storage.journal.header import HEADER_BYTES, JournalHeader, JournalRefusedError
+from app.storage.layout import RECORDINGS, VIDEOS
 
 HEADERS_DUE = "journal_headers_due"  # the setting that states that headers still hold the old wrapping
 
 
-def write_headers(database: Database, recordings: Path) -> None:
-    """Write the database's keys into journal headers, as left by a key change; OSError: retried at next start."""
+def write_headers(database: Database, library: Path) -> None:
+    """Write the database's keys into the files' headers, as left by a key change; OSError: retried at next start."""
     with database.reading() as session:
         if session.get(SettingRow, HEADERS_DUE) is None:
             return
-        rows = [(row.file, row.wrapped_key) for row in session.scalars(select(JournalRow)) if row.wrapped_key]
+        rows = [(f"{RECORDINGS}/{row.file}", row.wrapped_key) for row in session.scalars(select(JournalRow))]
+        rows += [(f"{VIDEOS}/{row.file}", row.wrapped_key) for row in session.scalars(select(ClipRow))]
     for file, wrapped_key in rows:
-        path = recordings / file
-        if not path.exists():
+        path = library / file
+        if not wrapped_key or not path.exists():
             continue
         with path.open("r+b", buffering=0) as journal:
             found = journal.read(HEADER_BYTES)

@@ -1,9 +1,9 @@
 """Give a library another data key, so that who had the old one reads nothing of what comes.
 
-The database is copied under the new key, with the keys of all journals wrapped again, then takes the place of the old
-one, and the slots' file after it. Killed at any point, the library opens with the keys that it had or with all of the
-new ones: `settle` (`app.storage.key_change_rest`) looks which database is there, by the salt in its first bytes,
-and takes the slots' file that belongs to it. What is in the journals' own headers comes last; until then the
+The database is copied under the new key, with the keys of all journals and videos wrapped again, then takes the place
+of the old one, and the slots' file after it. Killed at any point, the library opens with the keys that it had or with
+all of the new ones: `settle` (`app.storage.key_change_rest`) looks which database is there, by the salt in its first
+bytes, and takes the slots' file that belongs to it. What is in the files' own headers comes last; until then the
 database's copy opens them.
 
 Backups that were made before keep their old key. So does what a disk keeps of files that were replaced.
@@ -21,17 +21,17 @@ from sqlalchemy import select
 
 from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.models import JournalRow, SettingRow
+from app.storage.database.models import ClipRow, JournalRow, SettingRow
 from app.storage.derived_keys import derived_keys, keep_derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import HEADER_BYTES, JournalHeader, JournalRefusedError, find_segments
 from app.storage.journal_headers import HEADERS_DUE, write_headers
 from app.storage.key_change_rest import remove_database, salt_of
 from app.storage.keys import KeySlots
-from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS, RECORDINGS
+from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS, RECORDINGS, VIDEOS
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import find_interrupted
-from app.storage.stored import Action, LibraryBusyError, LibraryError
+from app.storage.stored import Action, ClipState, LibraryBusyError, LibraryError
 from app.system.progress import Report
 from app.wording.translation import tr
 
@@ -69,7 +69,7 @@ def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Repor
         sealed = slots.sealed_again(old, new, staying)
         _replace(opened.folder, old, new, sealed.content, report)
     with closing(Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))) as database:
-        write_headers(database, opened.folder / RECORDINGS)
+        write_headers(database, opened.folder)
     report(1.0, "")
     return ChangedKey(new, sealed.recovery_key, sealed.left_out)
 
@@ -99,6 +99,10 @@ def refuse_change(opened: OpenedLibrary) -> None:
         raise LibraryError(
             "A recording is running or was not completed, so the key cannot be changed now",
             "Stop or review it, then try again",
+        )
+    if opened.library.clips.in_state(ClipState.OPEN):
+        raise LibraryError(
+            "A video is being recorded, so the key cannot be changed now", "Stop the recording, then try again"
         )
 
 
@@ -158,12 +162,15 @@ def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: 
         with database.writing() as session:
             keep_derived_keys(session, derived_keys(session, old), new)
             session.add(SettingRow(name=HEADERS_DUE, value=True))
-            rows = [row for row in session.scalars(select(JournalRow)) if row.wrapped_key]
-            sizes = [_size(folder / RECORDINGS / row.file) for row in rows]
+            rows: list[tuple[Path, JournalRow | ClipRow]] = []
+            rows += [(folder / RECORDINGS / row.file, row) for row in session.scalars(select(JournalRow))]
+            rows += [(folder / VIDEOS / row.file, row) for row in session.scalars(select(ClipRow))]
+            rows = [(path, row) for path, row in rows if row.wrapped_key]
+            sizes = [_size(path) for path, _ in rows]
             whole, done = max(sum(sizes), 1), 0
-            for row, size in zip(rows, sizes, strict=True):
+            for (path, row), size in zip(rows, sizes, strict=True):
                 share = COPY_SHARE + (1 - COPY_SHARE) * done / whole
-                _wrap_journal(folder / RECORDINGS / row.file, row, old, new)
+                _wrap_journal(path, row, old, new)
                 done += size
                 report(share, "")
         if database.faults():
@@ -172,7 +179,7 @@ def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: 
         os.fsync(file.fileno())
 
 
-def _wrap_journal(path: Path, row: JournalRow, old: DataKey, new: DataKey) -> None:
+def _wrap_journal(path: Path, row: JournalRow | ClipRow, old: DataKey, new: DataKey) -> None:
     """Wrap a journal's key again in its row, with the hash that its file is going to have."""
     try:
         with path.open("rb") as file:

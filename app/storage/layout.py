@@ -3,6 +3,7 @@
 keys.json                          who may open it
 library.db                         the encrypted database
 recordings/ID.SEGMENT.journal      the samples
+videos/ID.1.journal                one video of a walk each, as a journal is, by the id of its own
 library-id                         which library it is, for whoever has no key
 in-use                             locked by the program that records here
 tries.json                         how many wrong passphrases were typed
@@ -25,6 +26,7 @@ import platformdirs
 KEYS, NEW_KEYS = "keys.json", "keys-next.json"
 DATABASE, NEW_DATABASE = "library.db", "library-next.db"
 RECORDINGS = "recordings"
+VIDEOS = "videos"
 IN_USE = "in-use"
 MOVING = "moving-to-server"
 STATION, CACHE = "station.json", "cache"

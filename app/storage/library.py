@@ -37,6 +37,7 @@ from app.storage.sessions import Sessions
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
 from app.storage.unit_of_work import UnitOfWork
+from app.storage.videos.rows import Clips
 
 DEMONSTRATOR = Operator("demo", "Demonstration", Role.ADMINISTRATOR)
 
@@ -77,6 +78,7 @@ class Library:
         self.patients = Patients(self._unit)
         self.sessions = Sessions(self._unit)
         self.recordings = Recordings(self._unit)
+        self.clips = Clips(self._unit)
         self.results = Results(self._unit)
         self.courses = Courses(self._unit)
         self.corrections = Corrections(self._unit)
@@ -217,9 +219,9 @@ class Library:
         """Close the file, and the key with it; the next call opens both again, for the operator who is logged in."""
         self.database.close()
 
-    def write_journal_headers(self, recordings: Path) -> None:
+    def write_journal_headers(self, folder: Path) -> None:
         """Finish what a change of the data key left to be done; raises OSError."""
-        write_headers(self.database, recordings)
+        write_headers(self.database, folder)
 
     def close(self) -> None:
         self.log_out()

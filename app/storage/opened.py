@@ -20,7 +20,7 @@ from app.storage.files import held, sync_folder
 from app.storage.journal.shelter import Shelter
 from app.storage.key_change_rest import settle
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.layout import IN_USE, KEYS, RECORDINGS
+from app.storage.layout import IN_USE, KEYS, RECORDINGS, VIDEOS
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator, StoredJournal
 from app.wording.translation import tr
@@ -44,6 +44,11 @@ class OpenedLibrary:
     def recordings(self) -> Path:
         """The folder of the journals; it is there once something was recorded."""
         return self.folder / RECORDINGS
+
+    @property
+    def videos(self) -> Path:
+        """The folder of the videos; it is there once one was made."""
+        return self.folder / VIDEOS
 
     @property
     def slots(self) -> KeySlots:

@@ -12,18 +12,16 @@ themselves removed, ninety days later (`app.storage.backup`). Whoever is asked t
 """
 
 import datetime
-import os
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 from app.storage.clinic.handing_over import one_at_a_time
 from app.storage.clinic.journal_store import name_in_place
-from app.storage.files import sync_folder
-from app.storage.journal.header import HEADER_BYTES, JournalRefusedError, destroy_key
+from app.storage.journal.destroying import destroy_file
 from app.storage.library import now_utc
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import KEPT_DELETED, RecordingState, StoredRecording, StoredSession
+from app.storage.videos.destroying import destroy_clips_of
 
 UNUSED = datetime.timedelta(days=7)  # a longer time without use may be a clock that was set
 SETTLED = datetime.timedelta(days=1)  # in which somebody notices that the date is wrong
@@ -46,11 +44,13 @@ def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] 
     return len(overdue)
 
 
-def overdue_before(opened: OpenedLibrary, now: datetime.datetime) -> datetime.datetime | None:
-    """Give the instant before which deletions are overdue, None: none by a trusted clock; raises LibraryError."""
+def overdue_before(
+    opened: OpenedLibrary, now: datetime.datetime, kept: datetime.timedelta = KEPT_DELETED
+) -> datetime.datetime | None:
+    """Give the instant since which `kept` has passed, None: not yet by a trusted clock; raises LibraryError."""
     if opened.shared is not None:  # by the server's clock, which `now` of its library goes by
-        return opened.library.now() - KEPT_DELETED
-    left, later = KEPT_DELETED, now
+        return opened.library.now() - kept
+    left, later = kept, now
     for at in opened.library.audit.times():
         gap = max(later - at, datetime.timedelta(0))
         is_doubtful = gap > UNUSED and now - later < SETTLED
@@ -62,7 +62,8 @@ def overdue_before(opened: OpenedLibrary, now: datetime.datetime) -> datetime.da
 
 
 def destroy_recording(opened: OpenedLibrary, recording: StoredRecording) -> None:
-    """Make a recording's samples unreadable for good, or leave it if they are; raises LibraryError, OSError."""
+    """Make a recording's samples and videos unreadable for good; raises LibraryError, OSError."""
+    destroy_clips_of(opened, recording.id)
     with one_at_a_time:
         # what was handed over since it was listed is in the shared place, too
         now = opened.library.recordings.find(recording.id) if opened.shared is not None else None
@@ -72,7 +73,7 @@ def destroy_recording(opened: OpenedLibrary, recording: StoredRecording) -> None
                 if not journal.kept_as and path.exists():  # a station killed amid handing over may have put it there
                     journal = replace(journal, kept_as=name_in_place(path))
                 opened.shared.destroy(journal)
-            _destroy_file(path)
+            destroy_file(path)
         if recording.state is not RecordingState.DISCARDED:
             opened.library.recordings.discard(recording.id)
 
@@ -84,16 +85,3 @@ def _is_at_another_station(opened: OpenedLibrary, visit: StoredSession) -> bool:
         for recording in visit.recordings
         for journal in recording.journals
     )
-
-
-def _destroy_file(path: Path) -> None:
-    if not path.exists():
-        return  # an earlier try came as far
-    try:
-        destroy_key(path)
-    except JournalRefusedError:  # not sealed, or its beginning is damaged, which may still hold the key
-        with path.open("r+b", buffering=0) as file:
-            file.write(bytes(HEADER_BYTES))
-            os.fsync(file.fileno())
-    path.unlink()
-    sync_folder(path.parent)

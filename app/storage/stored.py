@@ -14,6 +14,7 @@ from app.storage.layout import segment_name
 from core.body import Joint, Side, Site
 from core.samples import SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
+from core.video.clip import Sync
 
 KEPT_DELETED = timedelta(days=30)  # and can be restored
 
@@ -46,6 +47,10 @@ class NotAllowedError(LibraryError):
     """The operator's role does not allow it."""
 
 
+class ClipRefusedError(LibraryError):
+    """A video cannot be made or shown. The walk beside it goes on."""
+
+
 class Role(StrEnum):
     """What an operator may do. Enforced by the application; whoever has the data key can read everything."""
 
@@ -65,6 +70,16 @@ class RecordingState(StrEnum):
     CLOSED = "closed"
     RECOVERED = "recovered"
     DISCARDED = "discarded"
+
+
+class ClipState(StrEnum):
+    """Discarded: it is being destroyed, and nobody sees it any more. Not in backup: it was restored without videos."""
+
+    OPEN = "open"
+    CLOSED = "closed"
+    RECOVERED = "recovered"
+    DISCARDED = "discarded"
+    NOT_IN_BACKUP = "not_in_backup"
 
 
 class ResultKind(StrEnum):
@@ -187,6 +202,53 @@ class StoredRecording:
     def is_unjudged(self) -> bool:
         """Whether it was recovered, and nobody has looked at it since."""
         return self.state is RecordingState.RECOVERED and not self.judged_by
+
+
+@dataclass(frozen=True, slots=True)
+class StoredClip:
+    """One video of a walk: `camera` 1 or 2, `view` what was entered of where it is.
+
+    `frames`, `length_s`, `sha256`: of the file once it is closed; 0 and empty until then.
+    `sync`: None for a video made elsewhere whose times are not known yet.
+    `wrapped_key` None: not sealed, destroyed, or not in the backup that the library was restored from.
+    """
+
+    id: UUID
+    version: int
+    recording_id: UUID
+    camera: int
+    view: str
+    width: int
+    height: int
+    rate_hz: float
+    frames: int
+    length_s: float
+    sync: Sync | None
+    is_imported: bool
+    state: ClipState
+    wrapped_key: bytes | None
+    sha256: str
+    created_at: datetime
+
+    @property
+    def file(self) -> str:
+        """Its name in the folder of the videos."""
+        return segment_name(self.id, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class VideoConsent:
+    """When a patient agreed to videos and who noted it, and when that was withdrawn; None and empty: never."""
+
+    given_at: datetime | None = None
+    given_by: str = ""
+    withdrawn_at: datetime | None = None
+    withdrawn_by: str = ""
+
+    @property
+    def is_given(self) -> bool:
+        """Whether videos may be made and kept."""
+        return self.given_at is not None and self.withdrawn_at is None
 
 
 @dataclass(frozen=True, slots=True)

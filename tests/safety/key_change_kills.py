@@ -24,19 +24,22 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
 from app.storage.opened import open_library
 from app.storage.stored import RecordingState, StoredJournal
+from app.storage.videos.reader import open_clip, read_clip
+from app.storage.videos.writer import ClipWriter
 from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.driver import KILLED, Found, drive, end_of_child
 from tests.quick_library import CHEAP, PASSPHRASE, quick_library
 from tests.safety.clinic_material import copy_of
+from tests.videos import MODE, NO_ROOM_ASKED, OPENED_NS, frame, picture
 
 LEAVING = "another four short words"
 EVENTS = ("open", "os.rename", "os.remove", "sqlite3.connect")
-JOURNALS = 5
+JOURNALS, FRAMES = 5, 20
 
 
 def make(folder: Path) -> None:
-    """A library of two operators with a few recordings."""
+    """A library of two operators with a few recordings, and a video."""
     with quick_library(folder) as opened:
         library, data_key = opened.library, opened.data_key
         assert data_key is not None
@@ -53,6 +56,11 @@ def make(folder: Path) -> None:
             journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
             library.recordings.add_journal(row.id, journal)
             library.recordings.close(row.id, RecordingState.CLOSED, {header.segment: summary.sha256})
+        library.clips.give_consent(patient.id)
+        video = ClipWriter.create(opened, row.id, OPENED_NS, 1, "", MODE, room=NO_ROOM_ASKED)
+        for number in range(FRAMES):
+            video.add(frame(number), waits=True)
+        video.stop()
 
 
 def kill_in_child(folder: Path, at_event: int, after_s: float | None) -> bool:
@@ -78,7 +86,7 @@ def faults_after(folder: Path) -> tuple[bool, list[str]]:
     faults: list[str] = []
     with open_library(folder, PASSPHRASE, "hk") as opened:
         database = Database(sqlite_engine(folder / DATABASE, opened.data_key))
-        write_headers(database, opened.recordings)
+        write_headers(database, opened.folder)
         database.close()
         faults += opened.library.faults()
         faults += [fault.what for fault in opened.library.audit.verify().faults]
@@ -89,6 +97,12 @@ def faults_after(folder: Path) -> tuple[bool, list[str]]:
             reader = JournalReader(path, opened.data_key)
             if sum(1 for _ in reader.records()) < 2000 or not reader.report.is_whole:
                 faults.append(f"{path.name} is not whole")
+        for clips in opened.library.clips.of_session(opened.library.sessions.list()[0].id).values():
+            pictures = open_clip(opened, clips[0], "").pictures
+            if [pictures.jpeg(k) for k in range(len(pictures))] != [picture(k) for k in range(FRAMES)]:
+                faults.append("the video is not whole")
+            if read_clip(opened.videos / clips[0].file, clips[0].id, opened.data_key).report.sha256 != clips[0].sha256:
+                faults.append("the video is not what its row states")
     try:
         KeySlots(folder / KEYS).open("ab", LEAVING)
         is_new = False

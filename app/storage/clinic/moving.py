@@ -66,6 +66,11 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
         raise LibraryError("Only a library in a folder can be moved to a server", "Open your own library")
     if any(not one.problem for one in find_interrupted(opened)):
         raise LibraryError("A recording is running or was not completed", "Stop or review it, then move the library")
+    if library.clips.known():
+        raise LibraryError(
+            "This library contains videos, which a clinic's shared library does not store",
+            "Delete the videos, then move the library",
+        )
     store = JournalStore(station.journals)
     with closing(station.database_kept()) as server:
         refuse_nul(library.database)

@@ -36,10 +36,11 @@ from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.ids import uuid7
 from app.storage.layout import segment_name
-from app.storage.stored import RecordingState, ResultKind, Role
+from app.storage.stored import ClipState, RecordingState, ResultKind, Role
 from core.body import Joint, Site
 from core.samples import RateKind
 from core.session import RecordingKind
+from core.video.clip import SyncBy
 
 SIDES = ("left", "right", "both", "none", "")
 WORD = 20  # letters that the longest of our own words may have
@@ -296,6 +297,50 @@ class JournalRow(Base):
     @property
     def file(self) -> str:
         return segment_name(self.recording_id, self.segment)
+
+
+class ClipRow(Versioned, Base):
+    """One video of a walk. `sync_offset_s` None: its times are not known; `sync_sd_s` None: nor is their error.
+
+    `wrapped_key` is a copy of the file's own, as in `JournalRow`.
+    """
+
+    __tablename__ = "clips"
+    __table_args__ = (CheckConstraint("camera IN (1, 2)", name="camera"),)
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid7)
+    recording_id: Mapped[UUID] = mapped_column(ForeignKey("recordings.id", ondelete="CASCADE"), index=True)
+    camera: Mapped[int]
+    view: Mapped[str]
+    width: Mapped[int]
+    height: Mapped[int]
+    rate_hz: Mapped[float]
+    frames: Mapped[int]
+    length_s: Mapped[float]
+    sync_offset_s: Mapped[float | None]
+    sync_sd_s: Mapped[float | None]
+    sync_by: Mapped[SyncBy | None] = mapped_column(_words(SyncBy, "sync_by"))
+    is_imported: Mapped[bool]
+    state: Mapped[ClipState] = mapped_column(_words(ClipState, "state"), index=True)
+    wrapped_key: Mapped[bytes | None] = mapped_column(LargeBinary)
+    sha256: Mapped[str]
+    created_at: Mapped[datetime.datetime]
+
+    @property
+    def file(self) -> str:
+        return segment_name(self.id, 1)
+
+
+class VideoConsentRow(Base):
+    """Whether a patient agreed to videos, as it was stated last; the audit has what was stated before."""
+
+    __tablename__ = "video_consents"
+
+    patient_id: Mapped[UUID] = mapped_column(ForeignKey("patients.id", ondelete="CASCADE"), primary_key=True)
+    given_at: Mapped[datetime.datetime]
+    given_by: Mapped[str]
+    withdrawn_at: Mapped[datetime.datetime | None]
+    withdrawn_by: Mapped[str]
 
 
 class ResultRow(Base):

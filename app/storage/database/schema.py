@@ -5,7 +5,7 @@ from sqlalchemy import Connection, inspect, text
 from app.storage.database.engine import Database
 from app.storage.stored import LibraryError
 
-NEWEST = "0015"
+NEWEST = "0016"
 
 
 def bring_up_to_date(database: Database) -> None:

@@ -186,9 +186,9 @@ class JournalWriter:
         """Describe a source whose settings changed, or which came back: what follows does not join what was before."""
         self._inlet.change(source, info, layout)
 
-    def received(self, source: int, data: bytes) -> bool:
-        """Keep what was read from a source, before anything looks at it."""
-        return self._stream(RecordKind.BYTES, source, data)
+    def received(self, source: int, data: bytes, *, waits: bool = False) -> bool:
+        """Keep what was read from a source, before anything looks at it; `waits` (imports): never drop."""
+        return self._stream(RecordKind.BYTES, source, data, waits=waits)
 
     def sent(self, source: int, data: bytes) -> bool:
         """Keep what was written to a source."""
@@ -251,11 +251,11 @@ class JournalWriter:
 
     # whoever calls
 
-    def _stream(self, kind: RecordKind, source: int, data: bytes) -> bool:
+    def _stream(self, kind: RecordKind, source: int, data: bytes, *, waits: bool = False) -> bool:
         if len(data) > MAX_PAYLOAD - STREAM.size:
             k = len(data) // 2
-            return self._stream(kind, source, data[:k]) & self._stream(kind, source, data[k:])
-        return self._put(kind, source, STREAM.pack(source) + data, waits=False)
+            return self._stream(kind, source, data[:k], waits=waits) & self._stream(kind, source, data[k:], waits=waits)
+        return self._put(kind, source, STREAM.pack(source) + data, waits=waits)
 
     def _rows(self, rows: Rows, waits: bool) -> bool:
         payload = rows.packed()

@@ -269,7 +269,7 @@ def test_a_kill_during_a_change_leaves_the_old_or_the_new_passphrase(tmp_path: P
 
 @pytest.mark.endurance
 def test_forty_kills_during_changes(tmp_path: Path) -> None:
-    """T11 of the reliability targets; `tests.safety.key_change_kills` has its full size."""
+    """T11 of the reliability targets asks for a hundred; of the data key: `tests.safety.key_change_kills`."""
     check_kills(tmp_path, 40)
 
 

@@ -1,6 +1,5 @@
 """A library on the disk with somebody logged in, and recordings in it."""
 
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from core.body import Site
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.source import SourceInfo
+from tests.quick_library import copy_of
 
 PASSPHRASE = "four short words here"
 SENSOR = "LT-1"
@@ -44,11 +44,7 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> OpenedLibrary:
 @pytest.fixture
 def opened(untouched: OpenedLibrary, tmp_path: Path) -> Iterator[OpenedLibrary]:
     """A new library, with `hk` logged in."""
-    folder = tmp_path / "library"
-    shutil.copytree(untouched.folder, folder)
-    library = Library.open(folder, untouched.data_key)
-    library.log_in("hk")
-    with OpenedLibrary(library, folder, untouched.data_key) as opened:
+    with copy_of(untouched, tmp_path / "library") as opened:
         yield opened
 
 

@@ -245,7 +245,10 @@ def test_what_a_kill_left_of_a_backup_goes_a_day_later(
 def test_a_backup_is_in_the_audit_before_it_is_made(opened: OpenedLibrary, tmp_path: Path) -> None:
     back_up(opened, tmp_path / "backups")
     noted = [entry for entry in opened.library.audit.entries() if entry.action == Action.BACKUP]
-    assert [json.loads(entry.details) for entry in noted] == [{}, {"is_checked": True, "files": 2, "faults": 0}]
+    assert [json.loads(entry.details) for entry in noted] == [
+        {},
+        {"is_checked": True, "files": 2, "faults": 0, "has_videos": False},
+    ]
 
 
 def test_what_a_kill_left_of_a_restore_is_gone_at_the_next_start(

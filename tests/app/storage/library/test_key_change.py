@@ -235,7 +235,7 @@ def test_headers_that_a_kill_left_are_written_at_the_next_start(
 ) -> None:
     record("walk 1")
 
-    def fail(_database: Database, _recordings: Path) -> None:
+    def fail(_database: Database, _library: Path) -> None:
         raise OSError(5, "killed here")
 
     monkeypatch.setattr("app.storage.key_change.write_headers", fail)
@@ -248,7 +248,7 @@ def test_headers_that_a_kill_left_are_written_at_the_next_start(
         with pytest.raises(Exception, match="the key of this recording is damaged or belongs to another library"):
             JournalReader(recording, again.data_key)
         database = Database(sqlite_engine(again.folder / DATABASE, again.data_key))
-        write_headers(database, again.recordings)
+        write_headers(database, again.folder)
         database.close()
         assert samples_of(again)
 
@@ -280,7 +280,7 @@ def test_a_kill_at_any_point_leaves_the_old_key_or_the_new_one(
     os.waitpid(child, 0)
     with open_library(opened.folder, PASSPHRASE, "hk") as after:
         database = Database(sqlite_engine(after.folder / DATABASE, after.data_key))
-        write_headers(database, after.recordings)
+        write_headers(database, after.folder)
         database.close()
         assert samples_of(after) == expected
         assert not after.library.faults()

@@ -1,8 +1,6 @@
 """What was deleted can be restored for thirty days; then nothing opens it any more, and a kill changes nothing."""
 
-import datetime
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
 from uuid import UUID
 
@@ -10,42 +8,15 @@ import pytest
 
 from app.storage.journal.header import IDENTITY, WRAPPED_BYTES, JournalRefusedError
 from app.storage.journal.reader import JournalReader
-from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.retention import destroy_overdue, destroy_recording
-from app.storage.stored import Action, LibraryError, StoredRecording
+from app.storage.stored import LibraryError, StoredRecording
+from tests.app.storage.later import Later, go_on, later, timed
 
 Record = Callable[..., StoredRecording]
 
 
-class Later:
-    """The time of a library, which a test moves on."""
-
-    def __init__(self) -> None:
-        self.days = 0.0
-
-    def __call__(self) -> datetime.datetime:
-        return datetime.datetime.now(datetime.UTC) + datetime.timedelta(self.days)
-
-
-@pytest.fixture
-def later() -> Later:
-    return Later()
-
-
-def go_on(timed: OpenedLibrary, later: Later, days: float) -> None:
-    """Let time pass in which somebody looks in every five days."""
-    while later.days < days:
-        later.days = min(later.days + 5, days)
-        timed.library.audit.note(Action.VIEW, "library")
-
-
-@pytest.fixture
-def timed(opened: OpenedLibrary, later: Later) -> Iterator[OpenedLibrary]:
-    """The same library under the test's time."""
-    with replace(opened, library=Library.open(opened.folder, opened.data_key, later)) as timed:
-        timed.library.log_in("hk")
-        yield timed
+__all__ = ["later", "timed"]  # fixtures
 
 
 def test_a_deleted_session_is_destroyed_after_thirty_days_and_not_before(
