@@ -1,11 +1,13 @@
 """`python -m app` is `gaitwright`; frozen into a program of its own, it is each process that this one starts, too.
 
 Such a program is no Python that takes a module to run. It begins again as itself, and what it is to be is given by its
-arguments: a worker of a batch by those of `multiprocessing`, the reader of foreign files by a word.
+arguments: a worker of a batch by those of `multiprocessing`, the reader of foreign files and that of a camera by
+a word.
 """
 
 import os
 import sys
+from multiprocessing import freeze_support
 
 LIBRARIES, LIBRARIES_BEFORE = "LD_LIBRARY_PATH", "LD_LIBRARY_PATH_ORIG"
 BEGIN_AGAIN = "PYINSTALLER_RESET_ENVIRONMENT"
@@ -23,13 +25,11 @@ def begin() -> int:
 def begin_frozen() -> None:
     """Do a child's work and end, if this process was started for it; else return at once."""
     _keep_own_libraries()
-    from multiprocessing import freeze_support  # for a frozen program only
-
-    from devices.files import child  # as above
+    from devices.own_children import CHILDREN  # for a frozen program only
 
     freeze_support()
-    if sys.argv[1:2] == [child.WORD]:
-        child.main()
+    if len(sys.argv) > 1 and sys.argv[1] in CHILDREN:
+        CHILDREN[sys.argv[1]].main()
         sys.exit()
 
 

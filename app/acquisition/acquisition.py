@@ -115,6 +115,11 @@ class Acquisition:
         now_s = self.now_s
         return {one.sensor: one for k, reader in enumerate(self._readers) for one in reader.status(k, now_s)}
 
+    def silent_s(self) -> Mapping[str, float]:
+        """For how long each sensor has been silent; asked in every frame, for which a whole status costs too much."""
+        now_s = self.now_s
+        return {name: silent_s for reader in self._readers for name, silent_s in reader.silent_s(now_s).items()}
+
     def lost(self) -> Mapping[str, int]:
         """How many samples each sensor lacks so far; nought also where its rate is not known."""
         return {name: count for reader in self._readers for name, count in reader.lost().items()}

@@ -71,6 +71,14 @@ class Reader:
                 sensor.status(source, reported.get(sensor.name, NO_DETAILS), now_s) for sensor in self._sensors.values()
             ]
 
+    def silent_s(self, now_s: float) -> Mapping[str, float]:
+        """For how long each sensor has been silent, as in its status."""
+        reported = self.source.details()
+        with self._lock:
+            return {
+                name: sensor.silent_s(reported.get(name, NO_DETAILS), now_s) for name, sensor in self._sensors.items()
+            }
+
     def since(self, sensor: str, time_s: float) -> ImuBlock:
         """A sensor's samples that are not older than `time_s`."""
         with self._lock:

@@ -120,6 +120,11 @@ class Recorder:
         return self._writer.status
 
     @property
+    def opened_ns(self) -> int:
+        """When its journal was opened, on the host's clock: its samples' times count from there."""
+        return self._writer.header.opened_ns
+
+    @property
     def kind(self) -> RecordingKind:
         return self._entry.kind
 

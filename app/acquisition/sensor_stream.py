@@ -78,11 +78,15 @@ class SensorStream:
             source=source,
             details=reported,
             received_hz=self._received_hz(now_s),
-            silent_s=max(now_s - self._received_at_s, 0.0) if reported.quiet is None else 0.0,
+            silent_s=self.silent_s(reported, now_s),
             movement_rad_s=self._movement_rad_s(now_s),
             counts=SensorCounts(self._received, self._lost, self._damaged, self._doubled, self._late),
             lost_share=self._lost_share(),
         )
+
+    def silent_s(self, reported: SensorDetails, now_s: float) -> float:
+        """Seconds since something came last; 0 of one that is to send nothing."""
+        return max(now_s - self._received_at_s, 0.0) if reported.quiet is None else 0.0
 
     def _lost_share(self) -> float:
         received, lost = self._received - self._noted[0][0], max(self._lost - self._noted[0][1], 0)

@@ -1,6 +1,7 @@
-"""The films of the manual: which scenes each has, one frame of it, and all its scenes as stills side by side."""
+"""The films of the manual: which scenes each has, one frame of it, its scenes as stills side by side, its captions."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -21,6 +22,8 @@ SCENE_S = 3.0
 STILL_AT = 0.8  # of a scene: its movement is seen by then
 EDGE = 16
 SMALLEST = 9
+IN_MARKDOWN = re.compile(r"(?m)^!\[[^\]]*\]\(films/([\w-]+)\.webp\)$")
+LINE_BREAK = "  \n"  # in Markdown
 
 
 class Film(StrEnum):
@@ -62,6 +65,17 @@ SCENES: dict[Film, tuple[Scene, ...]] = {
 
 def duration_s(film: Film) -> float:
     return SCENE_S * len(SCENES[film])
+
+
+def with_captions(markdown: str) -> str:
+    """Put below each film of a page what its scenes show, one line each."""
+    return IN_MARKDOWN.sub(lambda found: f"{found[0]}\n\n{captions(Film(found[1]))}", markdown)
+
+
+def captions(film: Film) -> str:
+    """Give the words that are painted on the scenes, in their order, for whom a film moves too fast or not at all."""
+    scenes = enumerate(SCENES[film], start=1)
+    return LINE_BREAK.join(f"**{number}. {tr(scene.title)}:** {tr(scene.words)}" for number, scene in scenes)
 
 
 def film_height(width: float, *, is_moving: bool) -> float:

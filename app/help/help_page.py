@@ -21,7 +21,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.help.help_reader import HelpReader
-from app.help.help_topics import Topic, TopicGroup, group_title, markdown_of, plain_words_of, topic_title
+from app.help.help_topics import Topic, TopicGroup, group_title, topic_title
+from app.help.topic_text import markdown_of, plain_words_of
 from app.theme.current import NO_LIMIT, current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind

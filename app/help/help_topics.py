@@ -1,11 +1,8 @@
 """Topics of the manual. Its pages are files of `resources/help`, one folder below it for each other language."""
 
 from enum import StrEnum
-from functools import cache
 from importlib.resources import files
 from pathlib import Path
-
-from PySide6.QtGui import QTextDocument
 
 from app.wording.translation import spoken_language, tr
 
@@ -31,6 +28,7 @@ class Topic(StrEnum):
     BENCH = "bench"
     TIMED_TESTS = "timed-tests"
     PATIENT_SCREEN = "patient-screen"
+    VIDEO = "video"
     PELVIS = "pelvis"
     QUESTIONS = "questions"
     REPEATABILITY = "repeatability"
@@ -42,6 +40,7 @@ class Topic(StrEnum):
     COMMAND_LINE = "command-line"
     OTHER_PACKAGES = "other-packages"
     MESSAGES = "messages"
+    GLOSSARY = "glossary"
     KEYS = "keys"
     ACCESSIBILITY = "accessibility"
     SENSORS_XIMU3 = "sensors-ximu3"
@@ -95,6 +94,7 @@ def topic_title(topic: Topic) -> str:
         Topic.BENCH: tr("Alignment"),
         Topic.TIMED_TESTS: tr("Timed tests"),
         Topic.PATIENT_SCREEN: tr("Patient screen"),
+        Topic.VIDEO: tr("Video"),
         Topic.PELVIS: tr("Pelvis and hips"),
         Topic.QUESTIONS: tr("Cohort"),
         Topic.REPEATABILITY: tr("Repeatability"),
@@ -106,6 +106,7 @@ def topic_title(topic: Topic) -> str:
         Topic.COMMAND_LINE: tr("Command line"),
         Topic.OTHER_PACKAGES: tr("Other packages and scripts"),
         Topic.MESSAGES: tr("Messages explained"),
+        Topic.GLOSSARY: tr("Glossary"),
         Topic.KEYS: tr("Keys"),
         Topic.ACCESSIBILITY: tr("Accessibility"),
         Topic.SENSORS_XIMU3: "x-IMU3",
@@ -122,19 +123,3 @@ def help_file(name: str) -> Path:
     """The file of this name in the language that is spoken, in English where it has none."""
     spoken = FOLDER / spoken_language() / name
     return spoken if spoken.is_file() else FOLDER / name
-
-
-def markdown_of(topic: Topic) -> str:
-    return help_file(f"{topic}.md").read_text(encoding="utf-8")
-
-
-def plain_words_of(topic: Topic) -> str:
-    """Give the words of a topic alone, in small letters, to search in."""
-    return _plain_words(help_file(f"{topic}.md"))
-
-
-@cache
-def _plain_words(file: Path) -> str:
-    document = QTextDocument()
-    document.setMarkdown(file.read_text(encoding="utf-8"), QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
-    return document.toPlainText().casefold()

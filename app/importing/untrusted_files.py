@@ -14,6 +14,7 @@ from devices.files.references.trial import ReferenceFile
 from devices.files.session_folder import read_session, write_session
 from devices.files.table_choices import NOTHING_STATED, StatedChoices, TableChoices, TablePreview
 from devices.files.trial import Gathered, ImportedTrial
+from devices.files.video_file import VideoPiece
 from devices.other_packages import Offer
 
 
@@ -51,6 +52,11 @@ def read_foreign_trial(
 def preview_foreign_table(path: Path, stated: TableChoices, waiting: Waiting) -> TablePreview:
     """Preview a table as `devices.files.table_preview.preview_of`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).preview(path, stated)
+
+
+def read_foreign_video(path: Path, from_s: float, most_frames: int, waiting: Waiting) -> VideoPiece:
+    """Read a piece of a video as `devices.files.video_file.read_piece`, within limits; raises FileRefusedError."""
+    return LimitedReading(the_reader(), waiting).read_video(path, from_s, most_frames)
 
 
 def read_foreign_reference(path: Path, waiting: Waiting) -> ReferenceFile:

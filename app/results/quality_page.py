@@ -1,6 +1,6 @@
 """Degree to which a walk can be trusted. What can be read, what is against the rest and what to do, joint by joint."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import MappingProxyType
 
@@ -56,8 +56,10 @@ class QualityPage(QWidget):
         self.engineering = Toggle(tr("Engineering details"), tr("E"), is_on=False)
         self.how_found = Button(tr("Show calibration"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
         self.agreement = Button(tr("Compare with optical system"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
+        self._fill_engineering: Callable[[], None] | None = None  # what the folded tables have yet to show
         self.facts = CellTable(tr("Joint calibration"), head=36)
         self.hip_facts = CellTable(tr("Hip calibration"), head=36)
+        self.hip_facts.hide()
         self.findings = FindingsList()
         self.figure = JointsFigure()
         self.strides = Text(size=12, tone="ink2", wraps=True)
@@ -107,10 +109,9 @@ class QualityPage(QWidget):
         findings: Sequence[Finding],
         hips: Mapping[Joint, HipAngle] = MappingProxyType({}),
     ) -> None:
-        self.facts.show_rows(fact_columns(calibrated), fact_rows(calibrated))
-        self.hip_facts.show_rows(hip_columns(hips), hip_rows(hips))
-        self.hip_facts.setVisible(bool(hips))
-        self.findings.show_findings(findings)
+        """Fill the tables, once they are unfolded."""
+        self._fill_engineering = partial(self._show_tables, calibrated, findings, hips)
+        self._show_parts()
 
     def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
         """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
@@ -119,6 +120,17 @@ class QualityPage(QWidget):
         doors = (self.engineering, self.how_found, self.agreement)
         needed = sum(door.sizeHint().width() for door in doors) + 2 * self._doors.spacing()
         self._place_doors(1 if is_narrow else 3 if needed + beside <= width else 2)
+
+    def _show_tables(
+        self,
+        calibrated: Mapping[Joint, JointCalibration],
+        findings: Sequence[Finding],
+        hips: Mapping[Joint, HipAngle],
+    ) -> None:
+        self.facts.show_rows(fact_columns(calibrated), fact_rows(calibrated))
+        self.hip_facts.show_rows(hip_columns(hips), hip_rows(hips))
+        self.hip_facts.setVisible(bool(hips))
+        self.findings.show_findings(findings)
 
     def _build(self) -> None:
         cards = QWidget()
@@ -169,6 +181,9 @@ class QualityPage(QWidget):
 
     def _show_parts(self) -> None:
         is_folded = not self.engineering.isChecked()
+        if not is_folded and (fill := self._fill_engineering) is not None:
+            self._fill_engineering = None
+            fill()
         self._scroll.setVisible(is_folded)
         self._figures_card.setVisible(not is_folded)
 

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 from app.results.differs_card import DiffersCard
 from app.results.headline_text import HeadlineText
 from app.results.result_parts import PageRoom, ResultParts
+from app.results.shown_clips import ClipsOfVisit, is_same_session
 from app.results.summary_text import door_words, strides_in_short
 from app.results.thin_line import ThinLine
 from app.results.tools_row import ANSWER, COMPARE, RECORDING, STRIDES, TABLE, WALK, WHOLE, ToolsRow
@@ -40,6 +41,7 @@ from core.body import Joint, JointKind, Side, Site, knee_of
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind
+from core.video.clip import Clip
 
 LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 
@@ -60,9 +62,13 @@ class Behind(Enum):
 
 
 class ResultPage(QWidget):
-    """`parts`: those that were made before. `reported`: the text in the bar beneath the page has changed."""
+    """`parts`: those that were made before. `reported`: the text in the bar beneath the page has changed.
+
+    `synchronised`: a clip's id and its Sync, as somebody confirmed it.
+    """
 
     reported = Signal()
+    synchronised = Signal(object, object)
 
     def __init__(self, parts: ResultParts | None = None) -> None:
         super().__init__()
@@ -81,10 +87,10 @@ class ResultPage(QWidget):
         self._has_band, self._has_chosen_legs = True, False
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
-        tools = self._tools = ToolsRow(parts.compare, parts.whole.methods)
+        tools = self._tools = ToolsRow(parts.compare, parts.whole.methods, parts.video)
         self.view, self.to_answer, self.part = tools.view, tools.to_answer, tools.part
         self.recordings, self.thin, self.thin_name = tools.recordings, tools.thin, tools.thin_name
-        self.show_legs = tools.show_legs
+        self.show_legs, self.show_video = tools.show_legs, tools.show_video
         self.headline = HeadlineText()
         self.tiles = TileRow()
         self.differs = DiffersCard()
@@ -98,6 +104,7 @@ class ResultPage(QWidget):
         self.compare = parts.compare
         self.whole = parts.whole
         self.quality = parts.quality
+        self.video = parts.video
         self._build()
         self._connect()
 
@@ -112,6 +119,8 @@ class ResultPage(QWidget):
         """Show the recording in sight if `visit` has it, else a report's walk or the first.
         `course`: in time order; `can_choose`: strides may be left out; `is_live`: free motion repeatable.
         """
+        if self._visit is not None and not is_same_session(self._visit, visit):
+            self.video.clear()  # another patient's walk may have the same name
         self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
         session, analysis = visit.session, visit.analysis
         shown, called = self.recordings.currentData(), visit.shown_names
@@ -138,6 +147,21 @@ class ResultPage(QWidget):
         self.compare.show_visits(visits, walked, every)
         if isinstance(self.thin.currentData(), ThinLine):
             self._show_thin()
+
+    def show_clips(self, clips: Sequence[Clip]) -> None:
+        """Offer clips of the visit's walks."""
+        self.video.show_clips(clips)
+        self._show_parts()
+
+    def show_clips_of_visits(self, visits: Sequence[ClipsOfVisit]) -> None:
+        """Offer clips of other visits to be shown beside."""
+        self.video.show_clips_of_visits(visits)
+        self._show_parts()
+
+    def clear_clips(self) -> None:
+        """Drop every clip and picture, as at Lock."""
+        self.video.clear()
+        self._show_parts()
 
     def set_room(self, width: float, height: float) -> None:
         """Fold the page to its room in design px: curves or table, legs in the ankle's place, if little."""
@@ -168,6 +192,8 @@ class ResultPage(QWidget):
         """Give the focus to the first choice of the page."""
         if self._behind is Behind.QUALITY:
             self.quality.focus()
+        elif not self.video.isHidden():
+            self.video.focus()
         elif not self.legs.isHidden():
             self.legs.setFocus()  # arrows move the cursor at once
         else:
@@ -203,28 +229,42 @@ class ResultPage(QWidget):
             *self.part.segments,
             self.recordings,
             self.thin,
+            self.video.clip,
+            self.video.beside,
             self.show_legs,
+            self.show_video,
             *self.whole.methods.segments,
         ]
         shown = [
             *self.whole.tab_order,
             *self.strides.tab_order,
+            *self.video.tab_order,
             self.legs,
             self.differs.table,
             *self.cycles.tables,
             *self.compare.tab_order,
         ]
-        return [*choices, *shown, *self.quality.tab_order, self.door, self.repeat, self.all_figures]
+        return [
+            *choices,
+            *shown,
+            *self.quality.tab_order,
+            self.door,
+            self.repeat,
+            self.video.synchronise,
+            self.all_figures,
+        ]
 
     def _build(self) -> None:
         self._figures = QWidget()
         right = lay_out(QVBoxLayout(), (self.cycles.time_distance, 1), (self.cycles.hips, 1))
         tables = ((self.cycles.peaks, 1), (right, 1))
         self._tables = lay_out(QBoxLayout(ACROSS, self._figures), *tables, margins=0, spacing=12)
-        wide = (self.whole, self.cycles, self.compare, self._figures, self.quality)
-        parts = (self.whole, self.cycles, self.legs, self.strides, self.compare, self._figures, self.quality)
+        wide = (self.whole, self.video, self.cycles, self.compare, self._figures, self.quality)
+        parts = (*wide[:3], self.legs, self.strides, *wide[3:])
         self._columns = lay_out(QHBoxLayout(), *((part, int(part in wide)) for part in parts), spacing=12)
-        bottom = lay_out(QHBoxLayout(), (self.door, 1), self.repeat, self.all_figures, spacing=12)
+        bottom = lay_out(
+            QHBoxLayout(), (self.door, 1), self.repeat, self.video.synchronise, self.all_figures, spacing=12
+        )
         self.all_figures.set_face(height=BOTTOM)
         self._page = lay_out(
             QVBoxLayout(self),
@@ -247,6 +287,8 @@ class ResultPage(QWidget):
         self.strides.chosen.connect(self._on_stride_chosen)
         self.cycles.charts.picked.connect(self._on_stride_picked)
         self.show_legs.toggled.connect(self._on_legs_toggled)
+        self.show_video.toggled.connect(self._on_video_toggled)
+        self.video.synchronised.connect(self.synchronised)
         self.legs.moved.connect(self._on_cursor_moved)
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
@@ -256,6 +298,7 @@ class ResultPage(QWidget):
             (tr("Q"), self.door),
             (tr("F"), self.all_figures),
             (tr("G"), self.show_legs),
+            (tr("V"), self.show_video),
             (tr("E"), self.quality.engineering),
         ):
             shortcut = QShortcut(QKeySequence(key), button)  # asleep while its button is hidden
@@ -280,6 +323,7 @@ class ResultPage(QWidget):
     def _fit_parts(self) -> None:
         """Put beside each other what has its room there: tables of figures, the doors, the phases' legend."""
         room, cycles = self._room, self.cycles
+        self.video.set_compact(room.is_compact)
         self.quality.set_room(self._inner_width, is_compact=room.is_compact, is_narrow=room.is_narrow)
         self.whole.fit_phases(self._inner_width, is_narrow=room.is_narrow)
         right = [card for card in (cycles.time_distance, cycles.hips) if not card.isHidden()]
@@ -333,23 +377,29 @@ class ResultPage(QWidget):
         is_answer = view == ANSWER and behind is Behind.NOTHING
         is_compact, is_quality = self._room.is_compact, behind is Behind.QUALITY
         has_curves = is_answer and not (is_compact and self.part.choice == TABLE)
+        has_video = has_curves and self._tools.is_video
         self.view.setVisible(is_walk and not is_quality)
         self.to_answer.setVisible(is_quality)
         self.whole.methods.setVisible(view == WHOLE and not is_quality)
         self.part.setVisible(is_answer and is_compact)
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > (1 if view == ANSWER else 0))
-        has_thin = has_curves and self.thin.count() > 1 and not is_compact
+        has_thin = has_curves and self.thin.count() > 1 and not is_compact and not has_video
         self.thin.setVisible(has_thin)
         self.thin_name.setVisible(has_thin and self._tools.fitting.has_thin_name)
-        self.show_legs.setVisible(has_curves)
+        self.show_legs.setVisible(has_curves and not has_video)
+        self._tools.show_video_choices(is_offered=has_curves, is_shown=has_video)
         self._tools.against.setVisible(view == COMPARE)
         self._tools.beneath.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)
         self.compare.setVisible(view == COMPARE)
-        self.headline.setVisible(has_answer and behind is Behind.NOTHING and bool(self.headline.text))
-        self.tiles.setVisible(is_answer)
+        has_headline = has_answer and behind is Behind.NOTHING and bool(self.headline.text)
+        if not has_video:
+            self.video.hide()
+        self.headline.setVisible(has_headline and not (is_compact and has_video))
+        self.tiles.setVisible(is_answer and not has_video)
+        self.video.synchronise.setVisible(has_video)
         self.whole.setVisible(view == WHOLE and not is_quality)
-        self.cycles.setVisible(has_curves or (view == STRIDES and self._room.has_strides_beside))
-        has_legs = has_curves and self.show_legs.isChecked()
+        self.cycles.setVisible((has_curves and not has_video) or (view == STRIDES and self._room.has_strides_beside))
+        has_legs = has_curves and self.show_legs.isChecked() and not has_video
         self.legs.setVisible(has_legs)
         self._fit_charts(has_legs=has_legs)
         self.cycles.set_notes_shown(is_answer)
@@ -357,13 +407,16 @@ class ResultPage(QWidget):
         self._show_strides()
         self._figures.setVisible(behind is Behind.FIGURES)
         self.quality.setVisible(is_quality)
-        self.differs.setVisible(is_answer and self.differs.has_rows and not (is_compact and has_curves))
+        self.differs.setVisible(
+            is_answer and self.differs.has_rows and not (is_compact and has_curves) and not has_video
+        )
+        self.video.setVisible(has_video)  # once the curves are hidden: both have no room beside each other
         is_table_alone = is_answer and not has_curves
         self._page.setStretchFactor(self._columns, 0 if is_table_alone else 1)
         self._page.setStretchFactor(self.differs, 1 if is_table_alone else 0)
         self.door.setVisible(has_door and not is_quality)
         self.repeat.setVisible(is_answer and self._is_live and self._mended_by_motion is not None and not is_compact)
-        self.all_figures.setVisible(view == ANSWER and not is_quality)
+        self.all_figures.setVisible(view == ANSWER and not is_quality and not has_video)
         self._page.activate()  # now, else the charts would be painted once too small and once right
         self.reported.emit()
 
@@ -389,6 +442,9 @@ class ResultPage(QWidget):
     def _on_recording_changed(self) -> None:
         recording, visit = self.recording, self._visit
         self._show_quality()
+        if visit is not None:
+            is_walk = recording is not None and recording.kind is RecordingKind.WALKING
+            self.video.show_walk(visit, recording if is_walk else None)
         called = self._called(recording.name) if recording is not None else ""
         self.whole.show_recording(recording, called, is_simulated=visit is not None and visit.analysis.is_simulated)
         if recording is None or visit is None:
@@ -489,6 +545,11 @@ class ResultPage(QWidget):
         self._show_parts()
         if is_on:
             self.legs.setFocus()
+
+    def _on_video_toggled(self, is_on: bool) -> None:
+        self._show_parts()
+        if is_on:
+            self.video.focus()
 
     def _show_moving_legs(self) -> None:
         """Draw the legs where they are shown; they take longest, and what was drawn of the same walk stays."""

@@ -8,6 +8,7 @@ from app.results.compare_page import ComparePage
 from app.results.cycle_page import CyclePage
 from app.results.quality_page import QualityPage
 from app.results.strides_page import StridesPage
+from app.results.video_page import VideoPage
 from app.results.whole_page import WholePage
 from app.widgets import grid
 
@@ -72,9 +73,14 @@ class ResultParts:
     def quality(self) -> QualityPage:
         return QualityPage()
 
+    @cached_property
+    def video(self) -> VideoPage:
+        return VideoPage()
+
     def make_next(self) -> bool:
         """Make one part; whether there was one left to be made."""
-        left = [name for name in ("cycles", "strides", "compare", "whole", "quality", "legs") if name not in vars(self)]
+        names = ("cycles", "strides", "compare", "whole", "quality", "legs", "video")
+        left = [name for name in names if name not in vars(self)]
         if left:
             getattr(self, left[0])
         return bool(left)

@@ -1,11 +1,13 @@
 """Whether Rerun is installed: without it every result is there but the log that it shows."""
 
+from collections.abc import Sequence
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
 from pathlib import Path
 
 from core.results import Analysis
 from core.session import Session
+from core.video.clip import Clip
 
 
 def has_rerun() -> bool:
@@ -15,8 +17,11 @@ def has_rerun() -> bool:
     return any(one.name.endswith(tuple(EXTENSION_SUFFIXES)) for folder in folders for one in folder.glob("rerun*"))
 
 
-def write_log(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write what Rerun shows of a session; raises ImportError where it is not installed, OSError for a full disk."""
+def write_log(session: Session, analysis: Analysis, path: Path, clips: Sequence[Clip] = ()) -> None:
+    """Write what Rerun shows of a session; raises ImportError where it is not installed, OSError for a full disk.
+
+    `clips`: those to show beside it, in which faces can be recognised.
+    """
     from app.review.rerun_log import write_log as written  # Rerun takes longer to load than to write
 
-    written(session, analysis, path)
+    written(session, analysis, path, clips)

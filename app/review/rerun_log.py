@@ -12,8 +12,9 @@ numbered here, and `rrd_file` does the rest.
 
 import tempfile
 import uuid
-from collections.abc import Iterable, Iterator
-from itertools import count
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from itertools import chain, count
 from pathlib import Path
 
 import numpy as np
@@ -50,10 +51,12 @@ from core.hip.results import PelvisAngles
 from core.results import Analysis, JointAngle, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray
 from core.session import RecordingKind, Session
+from core.video.clip import Clip
 
 APPLICATION = "gaitwright"
 RECORDING = "session"
 BLUEPRINT = b"rec_" + b"0" * 32  # as long as the name that Rerun draws by chance, so it can take its place
+FRAMES_PER_CHUNK = 30  # about 2 MB
 ROWS_PER_CHUNK = 100_000  # 4 MB of three axes with their times
 BAND_PX = 3.0  # of the stroke that goes to and fro between its edges, once a sample
 LEGS_HEIGHT, CURVES_HEIGHT = 2, 3  # shares of the layout
@@ -67,19 +70,23 @@ HIP_RADIUS_M = 0.03
 DRAWN = "Legs: drawn, not measured"
 
 
-def write_log(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write raw signals, angles, certainty, phases, events and a layout as a Rerun log; raises OSError."""
+def write_log(session: Session, analysis: Analysis, path: Path, clips: Sequence[Clip] = ()) -> None:
+    """Write raw signals, angles, certainty, phases, events and a layout as a Rerun log; raises OSError.
+
+    Of `clips` those of kept recordings that are synchronised; without any the bytes are what they were.
+    """
     path.touch()  # Rerun reports an unwritable file in its own words, and not always
     timelines = _timelines(session)
     steps = {timelines[r.name]: found for r in analysis.recordings if (found := steps_of(r)) is not None}
     first = next(iter(timelines.values()), None)
-    layout, layout_name = _layout(session, analysis, steps_name(first) if first in steps else first)
+    clips = [clip for clip in clips if clip.is_synchronised and clip.recording in timelines]
+    layout, layout_name = _layout(session, analysis, steps_name(first) if first in steps else first, clips)
     log = rr.RecordingStream(APPLICATION, recording_id=RECORDING, send_properties=False)
     save(str(path), layout, log.to_native())
     waiting_rows = 0
     batches = (
         part
-        for chunk in _chunks(session, analysis, timelines)
+        for chunk in chain(_chunks(session, analysis, timelines), _frame_chunks(clips, timelines))
         for part in with_steps(chunk.entity_path, chunk.to_record_batch(), steps)
     )
     for number, batch in enumerate(batches, start=1):
@@ -125,6 +132,25 @@ def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> 
         for side, gait in analysed.gait.items():
             yield from _phase_chunk(timelines[analysed.name], side, analysed.time_s, gait.phase)
             yield from _event_chunk(timelines[analysed.name], side, analysed)
+
+
+def _frame_chunks(clips: Sequence[Clip], timelines: Mapping[str, str]) -> Iterator[Chunk]:
+    """Yield the frames of each clip as they are stored; one that is damaged is left out."""
+    for clip in clips:
+        for start in range(0, len(clip.stamped_s), FRAMES_PER_CHUNK):
+            jpegs = {}
+            for number in range(start, min(start + FRAMES_PER_CHUNK, len(clip.stamped_s))):
+                with suppress(OSError):
+                    jpegs[number] = clip.pictures.jpeg(number)
+            if not jpegs:
+                continue
+            columns = rr.EncodedImage.columns(blob=list(jpegs.values()), media_type=["image/jpeg"] * len(jpegs))
+            index = rr.TimeColumn(timelines[clip.recording], duration=clip.time_s[list(jpegs)])
+            yield Chunk.from_columns(_camera(clip.camera), indexes=[index], columns=columns)
+
+
+def _camera(number: int) -> str:
+    return f"/video/camera_{number}"
 
 
 def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
@@ -367,14 +393,18 @@ def _sides_with_knee(analysis: Analysis) -> list[Side]:
     return [side for side in Side if any(knee_of(side) in r.joints for r in analysis.recordings)]
 
 
-def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rrb.Blueprint:
+def _blueprint(session: Session, analysis: Analysis, timeline: str | None, clips: Sequence[Clip] = ()) -> rrb.Blueprint:
     columns = [column for side in Side if (column := side_views(analysis, side)) is not None]
     simulated, tabs = "SIMULATED. " if analysis.is_simulated else "", list[rrb.Container | rrb.View]()
     if columns:
         name, curves = "Angles and phases", rrb.Horizontal(*columns)
         top: rrb.Container | rrb.View = rrb.TextDocumentView(origin="/answer", name=f"{simulated}Answer")
-        if _sides_with_knee(analysis):
-            top = rrb.Horizontal(_leg_view(session, analysis), top, column_shares=[LEGS_WIDTH, PANEL_WIDTH])
+        cameras = sorted({clip.camera for clip in clips})
+        videos = [rrb.Spatial2DView(origin=_camera(number), name=f"Video, camera {number}") for number in cameras]
+        legs = [_leg_view(session, analysis)] if _sides_with_knee(analysis) else []
+        if videos or legs:
+            shares = [LEGS_WIDTH] * len((*legs, *videos)) + [PANEL_WIDTH]
+            top = rrb.Horizontal(*legs, *videos, top, column_shares=shares)
         tabs += [rrb.Vertical(top, curves, row_shares=[LEGS_HEIGHT, CURVES_HEIGHT], name=name)]
     if analysis.recordings:
         tabs += [rrb.TextDocumentView(origin="/may_be_read", name="Data quality")]
@@ -440,11 +470,13 @@ def _parts(part: rrb.Container | rrb.View) -> Iterator[rrb.Container | rrb.View]
         yield from _parts(inner)
 
 
-def _layout(session: Session, analysis: Analysis, timeline: str | None) -> tuple[PyMemorySinkStorage, bytes]:
+def _layout(
+    session: Session, analysis: Analysis, timeline: str | None, clips: Sequence[Clip]
+) -> tuple[PyMemorySinkStorage, bytes]:
     """Give the layout as messages that `save` puts before the log, and the name by which they call their store."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "layout.rbl"
-        _blueprint(session, analysis, timeline).save(APPLICATION, file)
+        _blueprint(session, analysis, timeline, clips).save(APPLICATION, file)
         reader = RrdReader(file)
         chunks = in_order(reader.stream(store=reader.blueprints()[0]))
     stream = rr.RecordingStream._from_native(new_blueprint(APPLICATION, make_default=False, make_thread_default=False))

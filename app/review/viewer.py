@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from app.storage.files import held
 from app.wording.translation import tr
 from core.results import Analysis
 from core.session import Session
+from core.video.clip import Clip
 
 MEMORY_LIMIT = "2GB"  # forty sessions of ten minutes
 END_S = 5.0  # then it is ended by force
@@ -87,8 +89,11 @@ class Viewer:
         self._folder: Path | None = None
         self._shown: dict[Path, subprocess.Popen[bytes]] = {}
 
-    def open(self, session: Session, analysis: Analysis) -> None:
-        """Write the log and show it; raises ViewerRefusedError (no viewer, screen or room, or no start)."""
+    def open(self, session: Session, analysis: Analysis, clips: Sequence[Clip] = ()) -> None:
+        """Write the log and show it; raises ViewerRefusedError (no viewer, screen or room, or no start).
+
+        `clips` are in it as it lies on the disk, plain, until the program ends.
+        """
         program, why = self._program, why_not(self._program)
         if program is None or why:
             raise ViewerRefusedError(why)
@@ -97,7 +102,7 @@ class Viewer:
             self._forget_closed()
             number, log = tempfile.mkstemp(prefix="session-", suffix=".rrd", dir=folder)
             os.close(number)
-            write_log(session, analysis, Path(log))
+            write_log(session, analysis, Path(log), clips)
             self._shown[Path(log)] = _start(
                 [
                     *(str(program), "--bind", ADDRESS, "--port", "auto"),

@@ -87,14 +87,14 @@ BESIDE = {  # how one leg has less than the other, and more
     ),
 }
 BESIDE[parameters.ANKLE_RANGE] = BESIDE[parameters.KNEE_RANGE]
-CHANGES = (
-    (
-        later("{clause} {now}, {size} more than {before} ({other})."),
-        later("{clause} {now}, {size} more than {before}."),
-    ),
+CHANGES = (  # less and more, with what it is compared with and without
     (
         later("{clause} {now}, {size} less than {before} ({other})."),
         later("{clause} {now}, {size} less than {before}."),
+    ),
+    (
+        later("{clause} {now}, {size} more than {before} ({other})."),
+        later("{clause} {now}, {size} more than {before}."),
     ),
 )
 OTHER_BESIDE = (
@@ -113,9 +113,8 @@ def change_sentence(column: str, who: str, difference: float, now: Reported, bef
     other = fixed(before.value, decimals) + unit
     pattern = CLAUSES.get(column, OTHER_OF_LEG if who else OTHER)
     clause = tr(pattern).format(who=who, measure=name_in_sentence(column), value=value)
-    with_other, alone = CHANGES[difference < 0]
-    agrees = agreeing_decimals(column, now.value, before.value, difference) == decimals
-    stated = tr(with_other if agrees else alone)
+    with_other, alone = CHANGES[difference >= 0]
+    stated = tr(with_other if _agree(now.value, before.value, difference, decimals) else alone)
     return capitalised(stated.format(clause=clause, now=now.where, size=size, before=before.where, other=other))
 
 
@@ -155,8 +154,12 @@ def joint_of_role(leg: str, joint: Joint) -> str:
 def agreeing_decimals(column: str, value: float, other: float, difference: float) -> int:
     """With how many decimals two values and their difference are stated; one more where these would not agree."""
     _, decimals = unit_and_decimals(column)
-    disagree = round(round(value, decimals) - round(other, decimals), decimals) != round(difference, decimals)
-    return decimals + disagree
+    return decimals + (not _agree(value, other, difference, decimals))
+
+
+def _agree(value: float, other: float, difference: float, decimals: int) -> bool:
+    """Whether two values, rounded, are as far apart as their difference, rounded."""
+    return round(round(value, decimals) - round(other, decimals), decimals) == round(difference, decimals)
 
 
 def unit_in_sentence(column: str) -> str:

@@ -11,6 +11,7 @@ from app.wording.recordings import ShownName, shown_names
 from core.alignment import root_of
 from core.results import Analysis, RecordingAnalysis
 from core.session import Recording, RecordingKind, Session
+from core.video.key_frames import KeyFrame
 
 MAX_CONDITIONS = 3  # more lines in one panel cannot be distinguished
 PAPERS = ("a4", "letter")
@@ -70,6 +71,7 @@ class ReportRequest:
     comment_by: str = ""
     thin: Part | None = None  # the condition at the earlier visit whose curves page one draws thin; None: none is
     has_course_page: bool = True  # whether a page shows the course, from two visits on
+    key_frames: tuple[KeyFrame, ...] = ()  # of the shown walk's video, where they were asked for
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:

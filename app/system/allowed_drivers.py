@@ -1,9 +1,8 @@
 """Drivers of other packages that somebody allowed on this computer; kept by the package's name and version."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
-from app.system.kept_json import keep, place_of, read_kept
+from app.system.kept_json import keep, read_kept
 from devices.other_drivers import OtherDrivers, load_drivers, offered_drivers
 
 FILE = "drivers.json"
@@ -17,10 +16,6 @@ class DriverPackage:
     version: str
     drivers: tuple[str, ...]
     is_allowed: bool
-
-
-def _place() -> Path:
-    return place_of(FILE)
 
 
 def driver_packages() -> list[DriverPackage]:
@@ -38,7 +33,7 @@ def driver_packages() -> list[DriverPackage]:
 def allow_drivers(package: str, version: str, *, is_allowed: bool) -> None:
     """Allow a package's drivers, or no longer; another version is not meant. Raises OSError: cannot be written."""
     kept = _allowed() | {(package, version)} if is_allowed else _allowed() - {(package, version)}
-    keep(_place(), sorted(kept))
+    keep(FILE, sorted(kept))
 
 
 def other_drivers() -> OtherDrivers:
@@ -50,7 +45,7 @@ def other_drivers() -> OtherDrivers:
 def _allowed() -> set[tuple[str, str]]:
     """What cannot be read is allowed no longer."""
     try:
-        kept = read_kept(_place())
+        kept = read_kept(FILE)
         return {(name, version) for name, version in kept if isinstance(name, str) and isinstance(version, str)}
     except (ValueError, TypeError):
         return set()

@@ -12,16 +12,17 @@ def place_of(name: str) -> Path:
     return platformdirs.user_config_path("gaitwright", appauthor=False) / name
 
 
-def read_kept(place: Path) -> Any:
-    """What is kept there; None where it cannot be read."""
+def read_kept(name: str) -> Any:
+    """What is kept in the file of this name; None where it cannot be read."""
     try:
-        return json.loads(place.read_text(encoding="utf-8"))
+        return json.loads(place_of(name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
 
 
-def keep(place: Path, content: object) -> None:
-    """Replace what is kept there, whole or not at all; raises OSError where it cannot be written."""
+def keep(name: str, content: object) -> None:
+    """Replace what is kept in it, whole or not at all; raises OSError where it cannot be written."""
+    place = place_of(name)
     place.parent.mkdir(parents=True, exist_ok=True)
     beside = place.with_suffix(".new")
     beside.write_text(json.dumps(content, indent=1), encoding="utf-8")

@@ -6,10 +6,9 @@ Columns are kept by their places, never by their names: those are a file's, and 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
-from app.system.kept_json import keep, place_of, read_kept
+from app.system.kept_json import keep, read_kept
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.table_choices import ALL_TABLES, NONE, SEPARATORS, TIME_UNITS, StatedChoices, TableChoices, by_place
 from devices.files.text_files import ENCODINGS
@@ -18,13 +17,9 @@ FILE = "tables.json"
 MOST_COLUMN = 10_000
 
 
-def _place() -> Path:
-    return place_of(FILE)
-
-
 def known_tables() -> StatedChoices:
     """By the fingerprints of tables; what cannot be read is left out, and has to be stated again."""
-    kept, found = read_kept(_place()), {}
+    kept, found = read_kept(FILE), {}
     for fingerprint, stated in kept.items() if isinstance(kept, dict) else ():
         if fingerprint == ALL_TABLES:
             continue
@@ -43,7 +38,7 @@ def keep_table(fingerprint: str, choices: TableChoices, columns: Sequence[str]) 
     if choices.are_any:
         with suppress(ValueError):
             kept[fingerprint] = by_place(choices, columns)
-    keep(_place(), {key: asdict(one) for key, one in kept.items()})
+    keep(FILE, {key: asdict(one) for key, one in kept.items()})
 
 
 def _choices(stated: Mapping[str, Any]) -> TableChoices:

@@ -58,6 +58,8 @@ class Icon(StrEnum):
     LEGS = "legs"
     GROUPS = "groups"
     GOAL = "goal"
+    CAMERA = "camera"
+    PAUSE = "pause"
 
 
 VERDICT_ICONS = {  # triangles are for problems of the measurement; a change of the patient has arrows

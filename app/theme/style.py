@@ -203,7 +203,7 @@ class ControlStyle(QProxyStyle):
     def _button_icon(self, face: ButtonFace, option: QStyleOption) -> Icon | None:
         is_on = bool(option.state & State.State_On)
         if face.kind is ButtonKind.TOGGLE:
-            return Icon.CHECK if is_on else Icon.UNCHECKED
+            return face.icon or (Icon.CHECK if is_on else Icon.UNCHECKED)
         return Icon.CHECK if face.kind is ButtonKind.CHIP and is_on else face.icon
 
     def _button_widths(self, face: ButtonFace, option: QStyleOption) -> tuple[int, int, int]:

@@ -118,6 +118,11 @@ class SessionRecordings(QObject):
         return self._phase in (RecordingPhase.BEGINNING_TO_STOP, RecordingPhase.STOPPING)
 
     @property
+    def latest(self) -> "Recorder | None":
+        """The latest recording, also once it has been stopped; None before the library has answered."""
+        return self._latest
+
+    @property
     def is_in_memory(self) -> bool:
         """Whether the latest recording is made in the sensors' memories."""
         return self._latest is not None and self._latest.memory is not None

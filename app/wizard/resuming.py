@@ -13,6 +13,7 @@ from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, inputs_of, keep_analysis
 from app.storage.kept_courses import course_key, keep_course
 from app.storage.stored import Limits, RecordingState, ResultKind, StoredPatient, StoredSession
+from app.storage.videos.reader import open_clips
 from app.summary.course import Course, course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import date_of
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from core.calibration.rest import Rest
     from core.results import Analysis
+    from core.video.clip import Clip
 
 USABLE = (RecordingState.CLOSED, RecordingState.RECOVERED)
 
@@ -41,6 +43,14 @@ class Resumed(NamedTuple):
     session: StoredSession
     recordings: tuple[SessionRecording, ...]
     known: "Analysis | None"
+
+
+class EarlierVisit(NamedTuple):
+    """A visit before this one: the session without samples, what came of it, and its videos that open."""
+
+    session: Session
+    analysis: "Analysis"
+    clips: "tuple[Clip, ...]"
 
 
 def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
@@ -60,6 +70,12 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
         known = analyse(bare(reported), progress=report)
         keep_analysis(results, session_id, reported, known)
     return _keep_course(opened, stored, reported, known)
+
+
+def read_earlier_visit(opened: "OpenedLibrary", session_id: UUID, report: Report) -> EarlierVisit:
+    """Read a visit to be shown beside a later one; raises as `read_analysed`."""
+    session, analysis = read_analysed(opened, session_id, report)
+    return EarlierVisit(session, analysis, open_clips(opened, session_id)[0])
 
 
 def sessions_of_condition(

@@ -1,6 +1,7 @@
 """Review of the session in Rerun. Its log is written beside the screen, and shown in a window of its own."""
 
 import logging
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -13,6 +14,7 @@ from app.workers.background import Background
 if TYPE_CHECKING:
     from core.results import Analysis
     from core.session import Session
+    from core.video.clip import Clip
 
 LOOK_EVERY_MS = 500
 _log = logging.getLogger(__name__)
@@ -38,8 +40,8 @@ class Reviewing(QObject):
         """Whether no window is open, nor being made ready."""
         return self._background.is_idle and (self._viewer is None or not self._viewer.is_showing)
 
-    def show(self, session: "Session", analysis: "Analysis") -> None:
-        """Open a window on the session; one at a time is made ready."""
+    def show(self, session: "Session", analysis: "Analysis", clips: "Sequence[Clip]" = ()) -> None:
+        """Open a window on the session, with videos where asked; one at a time is made ready."""
         program = viewer_program()
         if why := why_not(program):
             self.refused.emit(why, "")
@@ -49,7 +51,7 @@ class Reviewing(QObject):
         viewer = self._viewer = self._viewer or Viewer(default_root(), program)
 
         def work(_report: Report) -> None:
-            viewer.open(session, analysis)
+            viewer.open(session, analysis, clips)
 
         self._background.start(work)
 

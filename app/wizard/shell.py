@@ -94,13 +94,19 @@ class WizardShell(QWidget):
         self._by_step[step] = page
         self._pages.addWidget(page)
 
+    def begin_fade(self) -> None:
+        """Let the page that comes next appear under this one, as it is before anything of it changes.
+
+        Afterwards a picture of it would cost as much again: all of it would be laid out first.
+        """
+        self._fade.begin()
+
     def show_page(self, step: StepId, page: QWidget | None = None) -> None:
         """Go to a page, which is taken in if it is new. The focus goes where its reading starts."""
         if page is not None:
             self.add_page(step, page)
         page = self._by_step[step]
         if page is not self.page:
-            self._fade.begin()
             self._scroll.setUpdatesEnabled(False)  # until the page has its size, else its charts are painted at each
             self._settled.start(0)
             self._pages.setCurrentWidget(page)

@@ -20,15 +20,17 @@ from app.editing.session import SessionRecord, current_time
 from app.editing.session_recording import SessionRecording
 from app.storage.stored import StoredSession
 from app.system.progress import Report
+from app.wizard.clips import VisitClips
 from app.wizard.evaluation import Evaluation
 from app.wizard.fetch_control import FetchControl
 from app.wizard.kept_results import KeptResults
 from app.wizard.recordings import SessionRecordings
 from app.wizard.resuming import (
     USABLE,
+    EarlierVisit,
     Resumed,
     evaluated,
-    read_analysed,
+    read_earlier_visit,
     read_recordings,
     read_session,
     rests_of,
@@ -52,7 +54,7 @@ if TYPE_CHECKING:
     from core.calibration.rest import Rest
     from core.hip.results import HipIdentification
     from core.live.sensors import LiveSensor
-    from core.results import Analysis, JointCalibration
+    from core.results import JointCalibration
 
 MOST_EARLIER = 4  # visits; more are too many lines on one axis
 DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are kept for, as the library has it
@@ -61,8 +63,7 @@ DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are k
 class Visit(QObject):
     """`session` is None until the patient is known. Nothing of it is lost when this object goes: all is in the library.
 
-    `earlier_read`: the patient's visits before this one, each as the session without samples and its analysis, in order
-    of time.
+    `earlier_read`: the patient's visits before this one, each an EarlierVisit, in order of time.
     """
 
     changed = Signal()  # the session's row, or what is known of zero and standing
@@ -88,6 +89,7 @@ class Visit(QObject):
         self.record = SessionRecord(controller, self.patient, self)
         self.sensors = WornSensors(self)
         self.recordings = SessionRecordings(controller, self)
+        self.clips = VisitClips(controller, self.recordings, self)
         self.worn = WornCorrections(controller, self.sensors, self.recordings, self)
         self.evaluation = Evaluation(self)
         self._kept_results = KeptResults(controller, self.evaluation, self.recordings, self)
@@ -121,6 +123,7 @@ class Visit(QObject):
         self.sensors.refused.connect(self.refused)
         self.sensors.opened.connect(self._on_sensors_opened)
         self.evaluation.refused.connect(self.refused)
+        self.clips.refused.connect(self.refused)
         self.reviewing.refused.connect(self.refused)
         self.fetch = FetchControl(self.recordings, self.sensors, self)
         """Gets recordings out of the sensors' memories."""
@@ -320,11 +323,11 @@ class Visit(QObject):
             return
         session = self.session
 
-        def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[Session, Analysis]]":
+        def work(opened: "OpenedLibrary", report: Report) -> list[EarlierVisit]:
             lines = opened.library.sessions.list(session.patient_id)  # latest first
             before = [line for line in lines if line.id != session.id and line.started < session.details.started]
             shown = before if len(before) <= MOST_EARLIER else [*before[: MOST_EARLIER - 1], before[-1]]
-            return [read_analysed(opened, line.id, report) for line in reversed(shown)]
+            return [read_earlier_visit(opened, line.id, report) for line in reversed(shown)]
 
         self._controller.run_long(work, self._on_earlier_read, self._on_refused, None, self, is_quiet=True)
 
@@ -360,9 +363,11 @@ class Visit(QObject):
             part.finish()
 
     @property
-    def _with_threads(self) -> "tuple[MemoryFetches | WornSensors | Evaluation | Reviewing | Background, ...]":
+    def _with_threads(
+        self,
+    ) -> "tuple[MemoryFetches | WornSensors | Evaluation | Reviewing | VisitClips | Background, ...]":
         fetches, pages = self.recordings.fetches, (self.preview, self.looking, self.comparing)
-        return (fetches, self.sensors, self.evaluation, self.reviewing, *pages)
+        return (fetches, self.sensors, self.evaluation, self.reviewing, self.clips, *pages)
 
     @property
     def is_asking(self) -> bool:
@@ -429,7 +434,7 @@ class Visit(QObject):
     def _on_not_looked(self, _what: str, _remedy: str) -> None:
         """No harm: it is looked at again."""
 
-    def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
+    def _on_earlier_read(self, found: list[EarlierVisit]) -> None:
         self.earlier_read.emit(found)
 
     def _on_resumed(self, read: Resumed) -> None:

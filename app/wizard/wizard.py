@@ -250,6 +250,7 @@ class Wizard(QWidget):
         if reason := self._steps[self._current].cannot_leave or self._steps[goal].cannot_enter:
             self._show_message(reason, "")
             return
+        self.shell.begin_fade()
         self.shell.banner.hide()
         self._steps[self._current].leave()  # which may have something to say over the next
         self._go_to(goal)

@@ -120,10 +120,14 @@ class WornSensors(QObject):
         return {} if self.acquisition is None else self.acquisition.status()
 
     @property
+    def silent_s(self) -> "Mapping[str, float]":
+        return {} if self.acquisition is None else self.acquisition.silent_s()
+
+    @property
     def are_silent(self) -> bool:
         """Whether none of the sensors that are worn has been received for a second or more."""
-        worn = [status for name, status in self.status.items() if name in self.site_of]
-        return bool(worn) and all(status.silent_s >= SILENT_FROM_S for status in worn)
+        worn = [silent_s for name, silent_s in self.silent_s.items() if name in self.site_of]
+        return bool(worn) and all(silent_s >= SILENT_FROM_S for silent_s in worn)
 
     @property
     def joints(self) -> list[Joint]:

@@ -48,6 +48,7 @@ class LibraryController(QObject):
     gone = Signal(str, str)  # the library's folder, while it is open: what happened, and what to do
     back = Signal(str, str)  # it is there again: and what was recorded meanwhile
     changed_elsewhere = Signal()  # another station of the clinic did something
+    locking = Signal()  # what the library shows is to be let go
 
     def __init__(self, parent: QObject | None = None, seen: Path | None = None) -> None:
         super().__init__(parent)
@@ -152,7 +153,9 @@ class LibraryController(QObject):
         """Drop the data key until `unlock`; calls wait, long work ends first, recordings have their own key."""
         if self._state is None or self._state.is_demonstration:
             return
-        self._is_to_be_locked = self._is_locked = True
+        was_locked, self._is_to_be_locked, self._is_locked = self._is_locked, True, True
+        if not was_locked:
+            self.locking.emit()  # what is asked now waits for the unlock
         if self._long.is_idle:  # what was stopped and has not ended yet still works with the key
             self._wait_for_recordings()
             self._calls.ask(Job(self._holder.lock))

@@ -11,6 +11,9 @@ from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, slots_of
 from app.storage.retention import destroy_overdue
 from app.storage.stored import Role
+from app.storage.videos.destroying import finish_destroying
+from app.storage.videos.recovery import recover_clips
+from app.storage.videos.retention import destroy_overdue_clips
 
 BACKUP_FOLDER = "backup_folder"  # the library's setting that names where its backups are
 
@@ -45,8 +48,11 @@ def tidy(library: OpenedLibrary) -> None:
     operator = library.library.operator
     if operator is None or operator.role is Role.VIEWER:
         return
-    library.library.write_journal_headers(library.recordings)
+    library.library.write_journal_headers(library.folder)
     destroyed = destroy_overdue(library)
     folder = library.library.settings.get(BACKUP_FOLDER, "")
     removed = remove_old_backups(Path(folder)) if folder and Path(folder).is_dir() else ()
-    _log.info("sessions destroyed: %d, old backups removed: %d", destroyed, len(removed))
+    finish_destroying(library)
+    recover_clips(library)
+    videos = destroy_overdue_clips(library)
+    _log.info("sessions destroyed: %d, videos: %d, old backups removed: %d", destroyed, videos, len(removed))

@@ -19,7 +19,7 @@ from tests.app.watchdog import Watchdog
 
 @pytest.fixture
 def watchdog(qapp: QApplication) -> Iterator[Watchdog]:
-    """Fail the test, with the stack, if anything holds up the screen's thread for over 200 ms; 100 are aimed at."""
+    """Fail the test, with the stack, if anything holds up the screen's thread for 150 ms; 100 are aimed at."""
     dog = Watchdog()
     dog.start()
     yield dog

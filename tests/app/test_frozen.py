@@ -4,10 +4,12 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from app import __main__ as opening
+from devices.cameras import child as camera
 from devices.files import child
 from devices.files.limited_reader import LimitedReader, LimitedReading
 
@@ -47,13 +49,16 @@ def test_foreign_files_are_read_by_the_program_itself(tmp_path: Path) -> None:
         reader.close()
 
 
-def test_who_is_started_as_a_child_never_comes_to_the_command_line(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("process", [child, camera])
+def test_who_is_started_as_a_child_never_comes_to_the_command_line(
+    process: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     done: list[str] = []
     monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
     monkeypatch.setattr(sys, "frozen", True, raising=False)
-    monkeypatch.setattr(sys, "argv", ["gaitwright", child.WORD, "1000"])
-    monkeypatch.setattr(child, "main", lambda: done.append("read"))
-    monkeypatch.setattr("multiprocessing.freeze_support", lambda: done.append("worker?"))
+    monkeypatch.setattr(sys, "argv", ["gaitwright", process.WORD, "1000"])
+    monkeypatch.setattr(process, "main", lambda: done.append("read"))
+    monkeypatch.setattr(opening, "freeze_support", lambda: done.append("worker?"))
     with pytest.raises(SystemExit) as ended:
         opening.begin()
     assert ended.value.code is None

@@ -39,6 +39,7 @@ TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 # written alike in both, looked at one by one
 ALIKE = {
     *("plantar", "dorsal", "April", "August", "September", "November", "Goniometer, {joint}", "Software", "Name"),
+    *("Video", "Video: {what}"),
     *("Parquet", "Patient", "Passphrase", "Esc", "Xsens MTi", "Lab Streaming Layer", "Bias, °", "Band", "Band [1]"),
     *(
         "Band [2]",

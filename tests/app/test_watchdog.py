@@ -14,14 +14,14 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from tests.app.watchdog import Watchdog
+from tests.app.watchdog import Watchdog, slowness
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 
 @pytest.fixture
 def dog(qapp: QApplication) -> Iterator[Watchdog]:
-    watching = Watchdog()
+    watching = Watchdog(slowness=lambda: 1.0)  # these work for so long, not so much
     watching.start()
     yield watching
     watching.stop()
@@ -46,9 +46,9 @@ def run(qtbot: QtBot, held_up_by: Callable[[], None]) -> None:
 
 
 def test_long_work_is_seen_with_its_place(qtbot: QtBot, dog: Watchdog) -> None:
-    run(qtbot, lambda: work_for(0.3))
+    run(qtbot, lambda: work_for(0.2))
     (late,) = dog.late
-    assert late.busy_s > 0.2
+    assert late.busy_s > 0.15
     assert "work_for" in str(late)
 
 
@@ -58,11 +58,11 @@ def test_a_long_wait_is_seen_with_its_place(qtbot: QtBot, dog: Watchdog) -> None
     lock.acquire()
 
     def wait_for_a_lock() -> None:
-        lock.acquire(timeout=0.5)
+        lock.acquire(timeout=0.3)
 
     run(qtbot, wait_for_a_lock)
     (late,) = dog.late
-    assert late.waited_s > 0.3
+    assert late.waited_s > 0.2
     assert "wait_for_a_lock" in str(late)
 
 
@@ -75,6 +75,21 @@ def test_short_work_again_and_again_is_no_fault(qtbot: QtBot, dog: Watchdog) -> 
     assert dog.late == []
 
 
+def test_a_slower_computer_is_given_more_time(qtbot: QtBot) -> None:
+    dog = Watchdog(slowness=lambda: 2.0)
+    dog.start()
+    run(qtbot, lambda: work_for(0.2))
+    assert dog.late == []
+    run(qtbot, lambda: work_for(0.4))
+    dog.stop()
+    (late,) = dog.late
+    assert late.busy_s > 0.3
+
+
+def test_a_computer_is_never_taken_for_faster_than_the_one_of_the_limits() -> None:
+    assert 1.0 <= slowness() < 50.0
+
+
 def test_waiting_for_events_is_no_fault(qtbot: QtBot, dog: Watchdog) -> None:
     qtbot.wait(400)
     assert dog.late == []
@@ -82,7 +97,7 @@ def test_waiting_for_events_is_no_fault(qtbot: QtBot, dog: Watchdog) -> None:
 
 def test_what_the_test_does_itself_is_no_fault(qtbot: QtBot, dog: Watchdog) -> None:
     with dog.paused():
-        work_for(0.3)
+        work_for(0.2)
     qtbot.wait(20)
     assert dog.late == []
 
@@ -124,7 +139,7 @@ class _Ended:
 def test_what_a_late_function_holds_is_not_kept_alive(
     qtbot: QtBot, dog: Watchdog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(linecache, "checkcache", lambda *_: time.sleep(0.5))  # telling a stack takes as long as it may
+    monkeypatch.setattr(linecache, "checkcache", lambda *_: time.sleep(0.3))  # telling a stack takes as long as it may
     by: list[int] = []
 
     def paint() -> None:

@@ -18,6 +18,7 @@ from app.home.settings.error_report import ErrorReport
 from app.home.settings.live_output_control import LiveOutputControl
 from app.home.settings.operators_card import OperatorLine
 from app.home.settings.settings_page import DeletedLine, SettingsPage
+from app.home.settings.video_control import VideoControl, are_in_backups
 from app.storage.audit import about
 from app.storage.backup import back_up
 from app.storage.keys import KeyRefusedError, KeySlots
@@ -63,6 +64,7 @@ class SettingsController(QObject):
         self._error_report.reported.connect(self.reported)
         self._error_report.written.connect(self.page.show_error_report)
         self._live_output = LiveOutputControl(settings, self.page.live_output)
+        self._video = VideoControl(controller, self.page.video)
         self._show_screen()
         self._connect()
 
@@ -93,6 +95,8 @@ class SettingsController(QObject):
             self._controller.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
             # no passphrase holds its name
             self._controller.run(_clinic_of, self.page.show_clinic, self._on_refused, self)
+        if may_back_up:
+            self._video.read()
         if is_administrator:
             self._read_operators()
 
@@ -234,7 +238,7 @@ class SettingsController(QObject):
         into = Path(self._backup_folder)
 
         def work(opened: "OpenedLibrary", report: Report) -> "Backup":
-            return back_up(opened, into, report)
+            return back_up(opened, into, report, with_videos=are_in_backups(opened))
 
         self.page.show_backup(tr("Backing up"), self._backup_folder, is_running=True)
         self._controller.run_long(work, self._on_backed_up, self._on_backup_refused, self._on_backup_progressed, self)

@@ -12,6 +12,7 @@ from app.home.settings.drivers_card import DriversCard
 from app.home.settings.live_output_card import LiveOutputCard
 from app.home.settings.operators_card import OperatorsCard
 from app.home.settings.settings_card import SettingsCard
+from app.home.settings.video_card import VideoCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme.current import SCALES, scaled
 from app.theme.icons import Icon
@@ -68,6 +69,8 @@ class SettingsPage(TallPage):
         self.column.addWidget(self.live_output)
         self._build_access()
         self._build_backup()
+        self.video = VideoCard()
+        self.column.addWidget(self.video)
         self.station = StationCard()
         self.more_stations = MoreStationsCard()
         lay_out(self.column, self.station, self.more_stations)
@@ -99,6 +102,7 @@ class SettingsPage(TallPage):
             self.renew,
             self.back_up,
             self.choose_folder,
+            *self.video.tab_order,
             *self.station.tab_order,
             *self.more_stations.tab_order,
             *self.drivers.toggles,
@@ -143,6 +147,7 @@ class SettingsPage(TallPage):
         self._own = own
         self.access_card.setVisible(has_access)
         self.backup_card.setVisible(has_backup)
+        self.video.setVisible(has_backup)
         self.deleted_card.setVisible(has_deleted)
         self.station.setVisible(is_station)
         self.more_stations.setVisible(may_move)

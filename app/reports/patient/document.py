@@ -13,6 +13,7 @@ from app.reports.patient.comparison_page import comparison_of, comparison_page, 
 from app.reports.patient.curves_page import curves_page
 from app.reports.patient.first_page import comment, first_page
 from app.reports.patient.fitting_page import fitting_page
+from app.reports.patient.key_frames_page import key_frames_page
 from app.reports.patient.method_page import words_page
 from app.reports.patient.time_page import time_page
 from app.reports.patient.timed_page import timed_page
@@ -109,7 +110,7 @@ def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
     are_same = one.visit.session is other.visit.session and one.visit.analysis is other.visit.analysis
     if not (are_same and one.earlier is other.earlier and one.made_at.date() == other.made_at.date()):
         return False
-    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "has_course_page")
+    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "has_course_page", "key_frames")
     return one.thin is other.thin and all(getattr(one, name) == getattr(other, name) for name in named)
 
 
@@ -126,7 +127,8 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
     fitting = fitting_of(session, request.visit.analysis)
-    of_walk, condition = pages_of_walk(facts), facts.condition
+    pictures, condition = key_frames_page(request.key_frames), facts.condition
+    of_walk = [*pages_of_walk(facts), *([pictures] if pictures else [])]
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts, comparison),

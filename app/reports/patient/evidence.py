@@ -242,7 +242,7 @@ def error_table() -> list[Block]:
         "between visits, {reattached} after reattaching in a session, {left_on} with sensors left in place, with a "
         "goal as much; legs more than 95 of 100 healthy people differ by."
     ).format(
-        visits=fixed(SENTENCE_FACTORS[ComparisonKind.VISITS], 1),
+        visits=fixed(SENTENCE_FACTORS[ComparisonKind.VISITS], 2),
         reattached=fixed(SENTENCE_FACTORS[ComparisonKind.STRAPPINGS], 1),
         left_on=fixed(SENTENCE_FACTORS[ComparisonKind.ATTACHED], 2),
     )

@@ -226,7 +226,7 @@ def _accuracy() -> str:
     # the figures of resources/help/accuracy.md; a test compares them
     return tr(
         "Difference from optical systems (root mean square, mean removed): two mechanical hinges "
-        "0.31° and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. "
+        "0.31° and 0.26°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. "
         "Absolute angles differed by about 5° at the knees and 7 to 9° at the ankles (unpublished "
         "recordings). 57 initial contacts and toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, "
         "contacts 25 ms later than optical; stride length 0.25 % too short, SD 1.5 cm. Not tested on "

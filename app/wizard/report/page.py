@@ -16,12 +16,14 @@ from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sheets import Sheet, Sheets, SmallSheets
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.toggle import Toggle
 from app.wizard.report.comment_editor import CommentEditor
 from app.wording.translation import LANGUAGES, spoken_language, tr
 
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 WORDS_WIDTH = 320
 PADDING = 20
+CHIP = 44
 NARROW_BELOW = 900
 QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
 LETTER = "letter"  # among the files to export
@@ -61,6 +63,9 @@ class ReportPage(QWidget):
         self._earlier_title = _title(tr("Compare with"))
         self.added = Chips(tr("Extra pages"), [("course", tr("Progress so far"))])
         self.added.choose(("course",))
+        self.video = Toggle(tr("Pictures of the video"), "", is_on=False)
+        self.video.set_face(height=CHIP)
+        self._faces = Text(tr("Faces can be recognised in these pictures."), size=14, tone="ink2", wraps=True)
         languages = [(key, name, "") for key, name in LANGUAGES.items()]
         self.language = Segmented(tr("Language of the patient letter"), languages)
         if spoken_language() in LANGUAGES:
@@ -75,24 +80,26 @@ class ReportPage(QWidget):
             )
         ]
         above, files = (self.editor, self._earlier_title, self.earlier), _title(tr("Files to export"))
-        lay_out(self._card.column, *above, *rows, files, self.formats, 1)
+        lay_out(self._card.column, *above, rows[0], self.video, self._faces, *rows[1:], files, self.formats, 1)
         pages = lay_out(QHBoxLayout(), self.small, (self.reading, 1), spacing=8)
         self._row = lay_out(QBoxLayout(ACROSS, self), (pages, 1), self._card, margins=(24, 16, 24, 16), spacing=16)
         self.editor.left.connect(self.focus)
         self.formats.turned.connect(self.options_changed)
         self.added.turned.connect(self.options_changed)
+        self.video.toggled.connect(self.options_changed)
         self.small.requested.connect(self._go_to)
         self.reading.verticalScrollBar().valueChanged.connect(self._on_scrolled)
         self.paper.chosen.connect(self.options_changed)
         self.earlier.activated.connect(self.options_changed)
         self.sheets.sharper_required.connect(self.sharper_required)
         self.show_visits([])
+        self.offer_video(is_offered=False)
         on_theme(self._fit_card)
 
     @property
     def tab_order(self) -> list[QWidget]:
         words: list[QWidget] = [self.small, self.reading, self.comment, self.editor.button]
-        choices = [self.earlier, *self.added.buttons, *self.language.segments, *self.paper.segments]
+        choices = [self.earlier, *self.added.buttons, self.video, *self.language.segments, *self.paper.segments]
         return [*words, *choices, *self.formats.buttons]
 
     def focus(self) -> None:
@@ -124,6 +131,13 @@ class ReportPage(QWidget):
         self.earlier.offer(lines + [(words, number) for number, words in visits], self.chosen_visit)
         for part in (self._earlier_title, self.earlier):
             part.setVisible(bool(visits))
+
+    def offer_video(self, *, is_offered: bool) -> None:
+        """Offer pictures of the walk's video, where there is one whose times are known."""
+        for part in (self.video, self._faces):
+            part.setVisible(is_offered)
+        if not is_offered:
+            self.video.show_on(False)
 
     @property
     def chosen_visit(self) -> UUID | None:

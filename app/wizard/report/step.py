@@ -1,7 +1,8 @@
 """What goes into the patient's file: the report as it will print, and the results as other programs read them."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from datetime import datetime
 from functools import cached_property
@@ -42,6 +43,7 @@ from app.wording.translation import tr
 from app.workers.background import Work
 from app.workers.library_controller import LibraryController
 from core.session import RecordingKind
+from core.video.key_frames import KeyFrame, key_frames
 
 if TYPE_CHECKING:
     from app.reports.patient.document import ReportPreview
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
     from app.wizard.report.leaving_dialog import Rows
     from app.wizard.report.writing import Documents
     from app.wizard.visit import Visit
+    from core.video.clip import Clip
 
 _log = logging.getLogger(__name__)
 
@@ -80,6 +83,8 @@ class ReportStep(Step):
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
+        visit.clips.opened.connect(self._on_clips_opened)
+        self._clips: tuple[Clip, ...] = ()
         self._thin = ThinLineSource(visit, self)
         self._thin.changed.connect(self._show)
 
@@ -119,6 +124,7 @@ class ReportStep(Step):
     def enter(self) -> None:
         self.comments.begin()
         self._read_choices()
+        self._visit.clips.open()
         self._show()
 
     def leave(self) -> None:
@@ -313,7 +319,29 @@ class ReportStep(Step):
             has_course_page="course" in chosen,
             thin=self._thin.line(visit, walks, course),
             paper=self.page.report.paper.choice,
+            key_frames=self._key_frames(visit, walks[-1]) if self.page.report.video.isChecked() else (),
         )
+
+    def _key_frames(self, visit: AnalysedVisit, name: str) -> tuple[KeyFrame, ...]:
+        """Pictures of the typical stride, from the first camera whose times are known; none of a damaged video."""
+        with suppress(OSError):
+            for clip in self._clips:
+                if clip.recording == name and (
+                    frames := key_frames(clip, visit.walk(name), visit.analysis.affected_side)
+                ):
+                    return frames
+        return ()
+
+    def _on_clips_opened(self, clips: "tuple[Clip, ...]") -> None:
+        self._clips = clips
+        if self._frame is None:
+            return
+        evaluation = self._visit.evaluation
+        walks: Sequence[str] = ()
+        if evaluation.session is not None and evaluation.analysis is not None:
+            walks = default_walks(AnalysedVisit(evaluation.session, evaluation.analysis))
+        is_offered = any(clip.recording in walks[-1:] and clip.is_synchronised for clip in clips)
+        self._frame.report.offer_video(is_offered=is_offered)
 
     def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
         """The patient's visits up to this one, as far as their figures are known."""

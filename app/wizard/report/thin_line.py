@@ -10,10 +10,9 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.joint_panels import thin_part
 from app.summary.request import AnalysedVisit
-from core.results import Analysis
-from core.session import Session
 
 if TYPE_CHECKING:
+    from app.wizard.resuming import EarlierVisit
     from app.wizard.visit import Visit
 
 
@@ -46,8 +45,8 @@ class ThinLineSource(QObject):
             self._found = made_from, thin_part(facts, self._read[1])
         return self._found[1]
 
-    def _on_read(self, found: "list[tuple[Session, Analysis]]") -> None:
+    def _on_read(self, found: "list[EarlierVisit]") -> None:
         if (session := self._visit.session) is not None:
-            self._read = session.id, tuple(AnalysedVisit(*one) for one in found)
+            self._read = session.id, tuple(AnalysedVisit(one.session, one.analysis) for one in found)
             if found:
                 self.changed.emit()

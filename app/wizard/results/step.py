@@ -3,18 +3,21 @@
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
+from shiboken6 import isValid
 
 from app.results.correct_page import CorrectPage, JointLine, WalkLine
 from app.results.detail_pages import DetailPages
+from app.results.shown_clips import ClipsOfVisit
 from app.summary.agreed import agreed_with
 from app.summary.course_lanes import CourseVisit
-from app.summary.report_dates import date_of
+from app.summary.report_dates import date_of, day
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme.icons import Icon
@@ -26,6 +29,7 @@ from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.figures import saved_from_library
 from app.wizard.results.stride_choice import StrideChoice
+from app.wizard.results.videos import VideoActions
 from app.wizard.resuming import course_to, courses_before
 from app.wizard.step import Step, StepId
 from app.wording.body import name_of
@@ -39,9 +43,10 @@ if TYPE_CHECKING:
     from app.editing.session_recording import SessionRecording
     from app.results.result_page import ResultPage
     from app.results.result_parts import ResultParts
+    from app.wizard.resuming import EarlierVisit
     from app.wizard.visit import Visit
     from core.results import Analysis
-    from core.session import Session
+    from core.video.clip import Clip
 
 
 class Shown(Enum):
@@ -62,9 +67,14 @@ class ResultsStep(Step):
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
         self._before: tuple[UUID | None, tuple[CourseVisit, ...]] = None, ()  # a session, and the visits before it
         self._part = Shown.RESULTS
+        self._clips: tuple[Clip, ...] = ()
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
         self._strides.offered.connect(self._offer)
+        self._videos = VideoActions(visit, self)
+        self._videos.reported.connect(self.reported)
+        visit.clips.opened.connect(self._on_clips_opened)
+        visit.clips.changed.connect(self._on_clips_changed)
         visit.recordings.changed.connect(self._on_recordings_changed)
         visit.changed.connect(self._on_visit_changed)
         visit.evaluation.done.connect(self._on_evaluated)
@@ -110,6 +120,7 @@ class ResultsStep(Step):
             self._visit.end_stopwatch()
         self._visit.evaluate_if_stale()
         self._read_courses()
+        self._visit.clips.open()
         self._show()
 
     def bar(self) -> BarState:
@@ -120,7 +131,12 @@ class ResultsStep(Step):
             return BarState(primary=go_on, has_back=self._part is not Shown.BEHIND)
         correct = BarAction(tr("Correct"), self._correct, icon=Icon.REPEAT)
         review = BarAction(tr("Review in Rerun"), self._review, icon=Icon.PLAY)
-        return BarState(primary=go_on, quiet=(correct, review), note=self.page.results().band_words)
+        results = self.page.results()
+        walk = self._walk_named(results.recording.name) if results.recording is not None else None
+        clip = results.video.shown.clip if results.video.shown is not None else None
+        videos = self._videos.actions(clip, walk, results)
+        quiet = videos if results.video.isVisible() else (correct, review, *(videos if clip is None else ()))
+        return BarState(primary=go_on, quiet=quiet, note=results.band_words)
 
     def _correct(self) -> None:
         self._part = Shown.CORRECTIONS
@@ -129,8 +145,13 @@ class ResultsStep(Step):
 
     def _review(self) -> None:
         evaluation = self._visit.evaluation
-        if evaluation.session is not None and evaluation.analysis is not None:
-            self._visit.reviewing.show(evaluation.session, evaluation.analysis)
+        session, analysis = evaluation.session, evaluation.analysis
+        if session is None or analysis is None:
+            return
+        if timed := tuple(clip for clip in self._clips if clip.is_synchronised):
+            self._videos.ask_review(self.page, timed, partial(self._visit.reviewing.show, session, analysis))
+        else:
+            self._visit.reviewing.show(session, analysis)
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action not in (KeyAction.BACK, KeyAction.LEAVE):
@@ -176,6 +197,7 @@ class ResultsStep(Step):
                 results.quality.agreement.clicked.connect(self._compare)
                 results.quality.repeat_requested.connect(lambda _side: self.jumped.emit(StepId.FREE_MOTION))
                 results.compare.visits_requested.connect(self._visit.read_earlier)
+                results.synchronised.connect(self._visit.clips.synchronise)
                 results.strides.turned.connect(self._strides.turn)
                 results.strides.all_required.connect(self._strides.take_all_in)
             self._shown = evaluation.analysis
@@ -280,6 +302,23 @@ class ResultsStep(Step):
             page.back.clicked.connect(self._on_corrected)
         return page
 
+    def _walk_named(self, name: str) -> "SessionRecording | None":
+        return next((walk for walk in self._visit.recordings.walks if walk.details.name == name), None)
+
+    def _on_clips_opened(self, clips: "tuple[Clip, ...]") -> None:
+        is_news, self._clips = bool(clips or self._clips), clips
+        if is_news and (frame := self._living_frame) is not None and frame.has_results:
+            if clips:
+                frame.results().show_clips(clips)
+            else:
+                frame.results().clear_clips()
+        self.changed.emit()
+
+    def _on_clips_changed(self) -> None:
+        """Show what is new of the videos: one that was made, found in time, or deleted."""
+        if self._is_in_sight():
+            self._visit.clips.open()
+
     def _recording(self, key: str) -> "SessionRecording | None":
         return next((recording for recording in self._visit.recordings.walks if str(recording.id) == key), None)
 
@@ -339,10 +378,14 @@ class ResultsStep(Step):
     # earlier visits
 
     def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
-        stored, (session_id, before) = self._visit.session, self._before
-        if stored is None or stored.id != session_id:
-            return ()
-        return course_to(before, stored, visit.session, visit.analysis)
+        stored = self._visit.session
+        return (
+            () if stored is None else course_to(self._visits_before(stored.id), stored, visit.session, visit.analysis)
+        )
+
+    def _visits_before(self, session_id: UUID) -> tuple[CourseVisit, ...]:
+        """As they were read; none until then."""
+        return self._before[1] if self._before[0] == session_id else ()
 
     def _read_courses(self) -> None:
         """What was kept of the visits before: changes since then are what the answer reports first."""
@@ -355,34 +398,47 @@ class ResultsStep(Step):
             )
 
     def _on_courses(self, before: tuple[UUID, tuple[CourseVisit, ...]]) -> None:
-        if before != self._before:
-            is_first, (_, visits) = before[0] != self._before[0], before
-            is_news, self._before = visits != self._before[1], before
-            if is_news:  # to show all again takes a tenth of a second
-                self._held = None
-            if is_news and self._shown is not None and self._frame is not None:
-                self._hold(self._frame.results(), self._shown)
-            if is_first and any(visit.course is None for visit in (*visits[:1], *visits[-1:])):
-                self._visit.read_earlier()  # an imported visit: its course is kept then
+        session_id, visits = before
+        is_first, is_news = session_id != self._before[0], visits != self._visits_before(session_id)
+        self._before = before
+        if is_news:
+            self._held = None
+            if self._shown is not None and (frame := self._living_frame) is not None:
+                self._hold(frame.results(), self._shown)
+        if is_first and any(visit.course is None for visit in (*visits[:1], *visits[-1:])):
+            self._visit.read_earlier()  # an imported visit: its course is kept then
 
     def _on_no_courses(self, _what: str, _remedy: str) -> None:
         """No harm: the answer is then of this visit alone."""
 
-    def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
+    def _on_earlier_read(self, found: "list[EarlierVisit]") -> None:
         """Show the visits in the order of time, this one last."""
         if any(visit.course is None for visit in self._before[1]):
             self._read_courses()
         session = self._visit.evaluation.session
-        if self._shown is None or self._frame is None or session is None:
+        if self._shown is None or self._living_frame is None or session is None:
             return
-        visits = [*found, (session, self._shown)]
+        visits = [*((one.session, one.analysis) for one in found), (session, self._shown)]
         named = [
             WalkedVisit(
                 reported.started[:10], analysis, reported.recordings, date_of(reported.started), agreed_with(reported)
             )
             for reported, analysis in visits
         ]
-        self.page.results().show_visits(visits_by_condition(named), conditions_in_words(named), parts_of_visits(named))
+        results = self.page.results()
+        results.show_visits(visits_by_condition(named), conditions_in_words(named), parts_of_visits(named))
+        with_clips = [one for one in found if one.clips]
+        results.show_clips_of_visits(
+            [
+                ClipsOfVisit(day(one.session.started), AnalysedVisit(one.session, one.analysis), one.clips)
+                for one in with_clips
+            ]
+        )
+
+    @property
+    def _living_frame(self) -> "_ResultsFrame | None":
+        """The page, unless its window has gone before what the library still answers."""
+        return self._frame if self._frame is not None and isValid(self._frame) else None
 
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()

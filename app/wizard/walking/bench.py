@@ -16,6 +16,7 @@ from core.alignment import (
     PartChange,
     ProsthesisPart,
     changed_between,
+    condition_returned_to,
     root_of,
 )
 from core.session import Recording, RecordingKind
@@ -204,8 +205,7 @@ class AlignmentChain:
     def again(self) -> tuple[str, AlignmentChange]:
         """What the next walk is called after the return, and what was undone before it."""
         back = changed_between(self.changes, self.latest, self.base) or ()
-        change = self.changes.get(self.base)
-        to = (change.returns_to if change is not None else "") or self.base
+        to = condition_returned_to(self.base, self.changes.get(self.base))
         return label_again(to, list(self.changes)), AlignmentChange(self.latest, as_entered(back), returns_to=to)
 
     @property

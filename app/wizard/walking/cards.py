@@ -45,9 +45,10 @@ class WalkFigures(Card):
         pairs = [lay_out(QHBoxLayout(), self._chips[side], self._counts[side], spacing=8) for side in Side]
         self._sides = lay_out(QBoxLayout(DOWN), *pairs, spacing=8)
         unit = self._unit, 0, Qt.AlignmentFlag.AlignBottom
+        self._with_unit = lay_out(QBoxLayout(ACROSS), self._cadence, unit, 1, spacing=8)
         rows = {
             tr("Strides"): lay_out(QHBoxLayout(), self._strides, 1, self._sides, spacing=8),
-            tr("Cadence"): lay_out(QHBoxLayout(), self._cadence, unit, 1, spacing=8),
+            tr("Cadence"): self._with_unit,
         }
         self._parts = [lay_out(QBoxLayout(DOWN), Text(word, size=14, tone="ink2"), row) for word, row in rows.items()]
         self._both = lay_out(QBoxLayout(DOWN), (self._parts[0], 1), self._line, (self._parts[1], 1))
@@ -77,16 +78,20 @@ class WalkFigures(Card):
         self._reserve_room()
         self._unit.setContentsMargins(0, 0, 0, px(size * UNDER_FIGURES))
 
-    def set_compact(self, is_compact: bool, is_narrow: bool) -> None:
-        """Stand in one line; where it is narrow, with the words above the figures."""
-        self._both.setDirection(ACROSS if is_compact else DOWN)
+    def set_compact(self, is_compact: bool, is_narrow: bool, *, is_aside: bool = False) -> None:
+        """Stand in one line; where it is narrow, with the words above the figures; `is_aside`: over a camera."""
+        self._both.setDirection(ACROSS if is_compact or is_aside else DOWN)
         self._sides.setDirection(ACROSS if is_compact else DOWN)
-        scaled(self._both.setSpacing, 32 if is_compact else 4)
+        self._with_unit.setDirection(DOWN if is_aside else ACROSS)
+        scaled(self._with_unit.setSpacing, 0 if is_aside else 8)
+        scaled(self._sides.setSpacing, 2 if is_aside else 8)
+        scaled(self._both.setSpacing, 16 if is_aside else 32 if is_compact else 4)
         for part in self._parts:
             part.setDirection(ACROSS if is_compact and not is_narrow else DOWN)
             scaled(part.setSpacing, 12 if part.direction() is ACROSS else 0)
-        self._line.setVisible(not is_compact)
-        self.set_padding(8 if is_compact else 16)
+            self._both.setAlignment(part, Qt.AlignmentFlag.AlignTop if is_aside else Qt.AlignmentFlag(0))
+        self._line.setVisible(not is_compact and not is_aside)
+        self.set_padding(8 if is_compact else 12 if is_aside else 16)
 
     def _reserve_room(self) -> None:
         """As wide as the figures get, so that nothing jumps."""

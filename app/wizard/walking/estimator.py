@@ -84,7 +84,8 @@ class WalkingEstimator:
         self._curves = {
             joint: _Curve(self._steps_s[joint.proximal]) for joint in LEG_JOINTS if joint in self.calibrated
         }
-        self._feet = {site.leg_side: _Foot() for site in sensors if site.segment is Segment.FOOT}
+        self._foot_sites = {site.leg_side: site for site in sensors if site.segment is Segment.FOOT}
+        self._feet = {side: _Foot() for side in self._foot_sites}
         self._received_s: dict[Site, float] = {}
         self._first_s: float | None = None
         self._now_s = -np.inf
@@ -147,26 +148,26 @@ class WalkingEstimator:
         missing = tuple(site for site in self._walking_sites() if self._is_silent(site))
         lanes, cadences, strides = {}, [], {}
         for side, foot in self._feet.items():
-            site = Site(f"{side}_{Segment.FOOT}")
+            site = self._foot_sites[side]
             foot.take(reported.feet[side], worn.get(site))
             lanes[side] = foot.lane(kept_from_s, is_silent=site in missing)
             count = foot.strides_since(self._count_from_s, kept_from_s)
             if not foot.is_doubtful:
                 strides[side] = count
             cadence = reported.feet[side].cadence_steps_min
-            if np.isfinite(cadence) and site not in missing:
+            if math.isfinite(cadence) and site not in missing:
                 cadences.append(cadence)
         self.state = WalkingReadout(
             now_s=self._now_s,
             joints={joint: trace for joint, trace in traces.items() if joint not in implausible},
             lanes=lanes,
             strides=strides,
-            cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
+            cadence_steps_min=sum(cadences) / len(cadences) if cadences else math.nan,
             slips=reported.slips,
             corrections=reported.corrections,
             missing=missing,
             implausible=implausible,
-            doubtful=tuple(Site(f"{side}_{Segment.FOOT}") for side, foot in reported.feet.items() if foot.is_doubtful),
+            doubtful=tuple(self._foot_sites[side] for side, foot in reported.feet.items() if foot.is_doubtful),
             stride_values=tuple(self._reported),
             values_reported=self._values_reported,
             test=None if test is None else test.state,
@@ -239,7 +240,7 @@ class _Curve:
 
     def since(self, time_s: float) -> LiveTrace:
         self._outside = self._outside[bisect_left(self._outside, time_s) :]
-        self._begin += int(np.searchsorted(self._time_s[self._begin : self._end], time_s))
+        self._begin += int(self._time_s[self._begin : self._end].searchsorted(time_s))
         part = slice(self._begin, self._end)
         return LiveTrace(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), self._is_provisional)
 
@@ -267,6 +268,7 @@ class _Foot:
         self._passed = 0  # strides since `_from_s` whose beginning is not among them any more
         self._first_s = np.inf  # of the contacts since `_from_s`
         self._is_doubtful_now = self._was_doubtful = False
+        self._lane, self._lane_of = LiveLane(), object()  # what was given last, and what it was made of
 
     @property
     def is_doubtful(self) -> bool:
@@ -277,10 +279,6 @@ class _Foot:
         return self._is_doubtful_now or self._was_doubtful
 
     def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
-        contacts_s = [event.time_s for event in foot.events if event.event is FootEvent.INITIAL_CONTACT]
-        self._first_s = min([self._first_s, *(time_s for time_s in contacts_s if time_s >= self._from_s)])
-        self._is_doubtful_now = foot.is_doubtful and foot.doubtful_from_s >= self._from_s
-        self._was_doubtful |= self._is_doubtful_now and foot.doubtful_from_s >= self._first_s
         if block is not None:
             before = block.time_s[:1] if self._received_s is None else np.array([self._received_s])
             time_s = np.concatenate([before, block.time_s])
@@ -292,7 +290,11 @@ class _Foot:
                 self._begin(PHASE_AFTER[event.event], event.time_s)
                 if event.event is FootEvent.INITIAL_CONTACT:
                     self._contacts_s.append(event.time_s)
+                    if event.time_s >= self._from_s:
+                        self._first_s = min(self._first_s, event.time_s)
             self._go_over(change)
+        self._is_doubtful_now = foot.is_doubtful and foot.doubtful_from_s >= self._from_s
+        self._was_doubtful |= self._is_doubtful_now and foot.doubtful_from_s >= self._first_s
 
     def strides_since(self, time_s: float, kept_from_s: float) -> int:
         """Count strides since `time_s`, contacts up to MAX_STRIDE_S apart.
@@ -309,10 +311,16 @@ class _Foot:
         return count
 
     def lane(self, from_s: float, is_silent: bool) -> LiveLane:
-        """What is still of interest; the rest is forgotten."""
+        """What is still of interest; the rest is forgotten. As long as nothing changes it is the same object."""
         while len(self._phases) > 1 and self._phases[1][1] < from_s:
             del self._phases[0]
         self._silent_s = [span for span in self._silent_s if span[1] >= from_s]
+        lane_of = tuple(self._phases), tuple(self._silent_s), self._received_s if is_silent else None
+        if lane_of != self._lane_of:
+            self._lane, self._lane_of = self._make_lane(is_silent), lane_of
+        return self._lane
+
+    def _make_lane(self, is_silent: bool) -> LiveLane:
         following = [*self._phases[1:], (Phase.UNKNOWN, self._received_s if is_silent else None)]
         spans = tuple(
             PhaseSpan(phase, start_s, end_s)

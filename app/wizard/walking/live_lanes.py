@@ -6,8 +6,8 @@ The phases look as in the results: loading full, foot flat pale, pre-swing hatch
 foot did may be given a moment late, so the end of a lane is drawn again as far back as its phases have changed.
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+import math
+from collections.abc import Mapping
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
@@ -87,12 +87,10 @@ class LiveLanes(Scrolling):
         picture = self._picture_of(columns, rows)
         from_x = picture.advance(self._now_s)
         first_s = picture.time_at(0)
-        seen = {side: tuple(_since(first_s, lane.spans)) for side, lane in self._lanes.items()}
-        for side, spans in seen.items():
-            changed = set(spans).symmetric_difference(_since(first_s, self._drawn.get(side, ())))
-            if changed and from_x > 0:
-                changed_x = picture.x_of(min(span.start_s for span in changed))
-                from_x = int(min(max(np.floor(changed_x) - 1, 0), from_x))
+        for side, lane in self._lanes.items():
+            changed_s = _changed_from_s(self._drawn.get(side, ()), lane.spans, first_s)
+            if from_x > 0 and changed_s < math.inf:
+                from_x = int(min(max(math.floor(picture.x_of(changed_s)) - 1, 0), from_x))
         if from_x < columns:
             painter = QPainter(picture.pixmap)
             painter.setClipRect(QRectF(from_x, 0, columns - from_x, rows))
@@ -102,7 +100,7 @@ class LiveLanes(Scrolling):
             for side in self._lanes:
                 self._draw_lane(painter, side, picture, from_x, ratio)
             painter.end()
-        self._drawn = seen
+        self._drawn = {side: lane.spans for side, lane in self._lanes.items()}
         return picture
 
     def _draw_lane(self, painter: QPainter, side: Side, picture: ScrollingPicture, from_x: int, ratio: float) -> None:
@@ -163,8 +161,9 @@ class LiveLanes(Scrolling):
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, stated)
 
 
-def _since(first_s: float, spans: tuple[PhaseSpan, ...]) -> Iterator[PhaseSpan]:
-    """Give the spans as far as they are in sight."""
-    for span in spans:
-        if span.end_s is None or span.end_s > first_s:
-            yield span if span.start_s >= first_s else replace(span, start_s=first_s)
+def _changed_from_s(before: tuple[PhaseSpan, ...], now: tuple[PhaseSpan, ...], first_s: float) -> float:
+    """Give from where on the spans in sight, which end after `first_s`, differ; infinite where they do not."""
+    if now is before:  # as in most frames
+        return math.inf
+    changed = set(now).symmetric_difference(before)
+    return min((one.start_s for one in changed if one.end_s is None or one.end_s > first_s), default=math.inf)

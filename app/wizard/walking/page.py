@@ -28,6 +28,7 @@ from app.widgets.sensors_progress import ProgressShown, SensorsProgress
 from app.widgets.text import MEDIUM, Text
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_view import BenchState, BenchView
+from app.wizard.walking.camera_card import CameraCard, CameraShown
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
 from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
 from app.wizard.walking.readout import WalkingReadout
@@ -68,7 +69,7 @@ class WalkingPage(QWidget):
     def __init__(self, entry: ChangeEntry | None = None) -> None:
         super().__init__()
         self._is_compact = self._has_bench = self._has_test = self._has_result = False
-        self._has_memory = self._has_hips = False
+        self._has_memory = self._has_hips = self._has_camera = False
         self.bench = BenchView(entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
@@ -87,6 +88,7 @@ class WalkingPage(QWidget):
         self.memory = SensorsProgress()
         self.figures = WalkFigures()
         self.walks = WalkList()
+        self.camera = CameraCard()
         self.next = NextCard()
         self.timed = TimedView()
         self.timed_result = TimedResultView()
@@ -108,7 +110,7 @@ class WalkingPage(QWidget):
         bench = self.bench.tab_order if self.bench.isVisibleTo(self) else []
         controls: list[QWidget] = [*self.patient_controls.controls, *bench, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
-        controls += [*self.walks.buttons, self.walks.restrapped]
+        controls += [*self.walks.buttons, self.walks.restrapped, *self.camera.tab_order]
         controls += [*self.next.chooser.stops, self.next.chooser.own]
         controls += self.timed_result.entry.fields
         controls += [self.next.course.field, self.next.test]
@@ -203,6 +205,14 @@ class WalkingPage(QWidget):
             self._has_memory = shown is not None
             self._arrange()
 
+    def show_camera(self, shown: CameraShown | None) -> None:
+        """Show the camera beside the walks; None: there is none."""
+        if shown is not None:
+            self.camera.show_camera(shown)
+        if (shown is not None) != self._has_camera:
+            self._has_camera = shown is not None
+            self._arrange()
+
     def choose_digit(self, digit: int) -> bool:
         """Choose the label whose cap shows `digit`; False where it means nothing now."""
         return not self.is_recording and self.next.chooser.choose_digit(digit)
@@ -267,7 +277,8 @@ class WalkingPage(QWidget):
         self.charts.setAccessibleName(tr("Live angles and gait phases"))
         regions = (self.empty, self.charts, self.timed_result, self.memory)
         self._left = lay_out(QVBoxLayout(), *((region, 1) for region in regions))
-        self._right = lay_out(QVBoxLayout(), self.figures, (self.walks, 1))
+        self._right = lay_out(QVBoxLayout(), self.figures, (self.walks, 1), self.camera)
+        self._right.addStretch()  # below the camera, where there are no walks yet
         self._middle = lay_out(QBoxLayout(ACROSS), (self._left, 1), self._right)
         self.patient_controls.setVisible(False)
         self.output.hide()
@@ -318,6 +329,7 @@ class WalkingPage(QWidget):
         self.figures.setVisible(is_recording and not is_test and not is_memory)
         self.next.setVisible(not is_recording and shows_walks)
         self.walks.setVisible(has_walks and shows_walks)
+        self.camera.setVisible(self._has_camera and not is_test and (not self._is_compact or shows_walks))
         self.walks.set_restrap_offered(not is_recording)
         self._place(self.figures, self._column if self._is_compact else self._right, 0)
         after_stopped = self._column.indexOf(self.received) + 1
@@ -339,12 +351,13 @@ class WalkingPage(QWidget):
         # between walks what comes next needs the room more
         is_high = self.is_recording or self._is_compact or self.height() >= px(HIPS_FROM)
         self.charts.set_hips(self._has_hips and is_high)
-        self.figures.set_size(FIGURE_COMPACT if self._is_compact else FIGURE_WIDE if is_wide else FIGURE)
+        is_aside = self._has_camera and not is_wide and not self._is_compact  # the camera needs the room below
+        self.figures.set_size(FIGURE_COMPACT if self._is_compact or is_aside else FIGURE_WIDE if is_wide else FIGURE)
         is_narrow = self.width() < px(NARROW_BELOW)
         self.stopped.set_narrow(is_narrow)
-        self.figures.set_compact(self._is_compact, is_narrow)
+        self.figures.set_compact(self._is_compact, is_narrow, is_aside=is_aside)
         side = max(px(SIDE_WIDTH_WIDE if is_wide else SIDE_WIDTH), self.walks.minimumSizeHint().width())
-        for card in (self.figures, self.walks):
+        for card in (self.figures, self.walks, self.camera):
             card.setMinimumWidth(0 if self._is_compact else side)
             card.setMaximumWidth(ANY_WIDTH if self._is_compact else side)
         margin = px(MARGIN_COMPACT if self._is_compact else MARGIN)

@@ -18,6 +18,7 @@ from app.wizard.losses import NOTHING
 from app.wizard.step import Step, StepId
 from app.wizard.walk_messages import no_foot_message
 from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.camera_control import CameraControl
 from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.page import WalkingPage
@@ -65,7 +66,8 @@ class WalkingStep(Step):
         self.memory = MemoryControl(visit, self)
         self.memory.lives.connect(self._on_lives)
         self.memory.done.connect(self.done)
-        for part in (self.bench, self._timed, self.memory):
+        self.camera = CameraControl(visit, self)
+        for part in (self.bench, self._timed, self.memory, self.camera):
             part.changed.connect(self._show)
         self._preview = LivePreview(visit, self)
         self._preview.renewed.connect(self._timed.watch)
@@ -95,6 +97,12 @@ class WalkingStep(Step):
             page.walks.renamed.connect(self._on_renamed)
             page.walks.restrapped.clicked.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
+            page.camera.turned.connect(self.camera.turn)
+            page.camera.agreed.connect(self.camera.agree)
+            page.camera.withdrawn.connect(lambda: self.camera.withdraw(page))
+            page.camera.camera_chosen.connect(self.camera.choose_camera)
+            page.camera.view_chosen.connect(self.camera.choose_view)
+            page.camera.mode_chosen.connect(self.camera.choose_mode)
             self.feedback = PatientFeedback(self._visit, page.patient_controls, self, self._preview.look)
             self.feedback.run_requested.connect(self.run)
             self._preview.renewed.connect(self.feedback.watch)
@@ -160,6 +168,7 @@ class WalkingStep(Step):
     def enter(self) -> None:
         self._is_in_sight = True
         self._timed.earlier.read()
+        self.camera.look()
         self.page.set_simulated(self._visit.is_simulated)
         self.page.set_hips(bool(self._visit.sensors.hips))
         self._preview.begin()
@@ -174,12 +183,14 @@ class WalkingStep(Step):
         self._is_in_sight = self._must_restrap = False
         if self.feedback is not None:
             self.feedback.close()
+        self.camera.leave()
         self._preview.end()
 
     def tick(self) -> None:
         if self._ticks % WATCH_TICKS == 0:
             self._watch_sensors()
         self._ticks += 1
+        self.page.camera.show_now(self.camera.facts, self.camera.pictures())
         self.page.show_test(self._timed.view())
         if self._timed.tick():
             self.stop()
@@ -311,6 +322,7 @@ class WalkingStep(Step):
     def stop(self) -> None:
         view = self._at_stop = self._preview.shown
         self._preview.end_walk()
+        self.camera.walk_ended()
         if self.feedback is not None and (walk := self._ongoing) is not None:
             self._tallies[walk.details.name] = self.feedback.end_walk()
         self._visit.recordings.stop(None if view is None else view.strides)
@@ -356,6 +368,7 @@ class WalkingStep(Step):
         if (are := self._are_sensors) != self._were_sensors:
             self._were_sensors = are
             self._show()
+        self.camera.watch()
         news = self._notice.look()
         if news and recordings.is_recording:
             sounds.play(Sound.LOSS)
@@ -409,6 +422,7 @@ class WalkingStep(Step):
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), name_in_words(self._label))
         self._page.show_tests(self._timed.planned, self._timed.result(), self._timed.before(self._label))
         self._page.show_memory(self.memory.shown)
+        self._page.show_camera(self.camera.shown)
         self.changed.emit()
 
     # what the page and the visit report
@@ -418,6 +432,7 @@ class WalkingStep(Step):
         if self._ongoing is None:
             return  # of another step, left before it had begun
         self.bench.begun()
+        self.camera.walk_begun()
         if self._is_in_sight and not self._visit.recordings.is_stopping:
             sounds.play(Sound.START)
 
@@ -425,6 +440,7 @@ class WalkingStep(Step):
     def _on_ended(self, recording: "SessionRecording") -> None:
         if recording.details.kind is RecordingKind.WALKING:
             self._preview.end_walk()  # also of one that ended by itself
+            self.camera.walk_ended()
             self._label = label_after(self._visit.patient.details, self._used)
             self._keep_tallies(recording)
             self._show()

@@ -29,6 +29,7 @@ from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, Text
 from app.wizard.walking.badge import Badge
+from app.wording.numbers import clock
 from app.wording.translation import tr, tr_n
 
 ROW, BETWEEN = 56, 4
@@ -50,6 +51,7 @@ class WalkRow:
     """One walk as it is called everywhere: `letter` is its condition's, with the walk's number from the second on.
 
     `strides` is None while nobody has counted them. `is_of_old_straps`: sensors were strapped again since.
+    `video_s`: how long its video is; 0 where it has none.
     """
 
     id: str
@@ -58,6 +60,7 @@ class WalkRow:
     state: WalkState
     strides: int | None = None
     is_of_old_straps: bool = False
+    video_s: float = 0.0
 
     @property
     def note(self) -> str:
@@ -65,7 +68,7 @@ class WalkRow:
         strides = ""
         if self.strides is not None:
             strides = tr_n("{count} stride", "{count} strides", self.strides).format(count=self.strides)
-        return {
+        stated = {
             WalkState.RECORDING: tr("recording"),
             WalkState.ASKING: tr("include or exclude?"),
             WalkState.KEPT: strides,
@@ -73,6 +76,8 @@ class WalkRow:
             WalkState.IN_SENSORS: tr("stored on the sensors"),
             WalkState.RECOVERED: tr("recovered, needs review"),
         }[self.state]
+        video = tr("video {length}").format(length=clock(self.video_s)) if self.video_s else ""
+        return " · ".join(filter(None, [stated, video]))
 
 
 class WalkList(Card):

@@ -39,8 +39,8 @@ class WalkNotice:
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return ()
-        status = sensors.status
-        silent_s = {site: status[name].silent_s for name, site in sensors.site_of.items() if name in status}
+        of_each = sensors.silent_s
+        silent_s = {site: of_each[name] for name, site in sensors.site_of.items() if name in of_each}
         return tuple(self._losses.update(silent_s, sensors.acquisition.now_s))
 
     def message(self, view: "WalkingReadout | None") -> Message:

@@ -36,7 +36,8 @@ def rows_of(visit: "Visit") -> tuple[WalkRow, ...]:
             state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
         strides = max(strides_of(visit, recording).values(), default=None)
         name, is_old = names[recording.details.name], recording.id not in strapped_last
-        rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
+        video_s = visit.clips.length_s(recording.id)
+        rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old, video_s))
     ongoing = ongoing_walk(recordings)
     fetched_later = [reported for reported in recordings.in_sensors if reported.kind is RecordingKind.WALKING]
     for reported in fetched_later:

@@ -14,7 +14,7 @@ from itertools import pairwise
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QAccessible, QAccessibleInterface
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QTextBrowser, QWidget
 
 Role, Words = QAccessible.Role, QAccessible.Text
 WORKED = frozenset(
@@ -25,6 +25,7 @@ MEANINGLESS = frozenset((Role.NoRole, Role.Client, Role.Pane, Role.Border, Role.
 IDENTIFIER = re.compile(r"[a-z]+(_[a-z0-9]+)+|qt_\w*|_\w*")
 LEGS_TOGETHER = ("_Tile “R thigh", "BodyFigure “The patient faces you")  # words go from leg to leg, not from row to row
 MOST_STOPS = 120  # more than any page has
+MOST_LINKS = 50  # of a text
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,10 @@ def tab_stops(window: QWidget) -> list[QWidget]:
     stops: list[QWidget] = []
     while (focused := QApplication.focusWidget()) is not None and focused not in stops and len(stops) < MOST_STOPS:
         stops.append(focused)
-        QTest.keyClick(focused, Qt.Key.Key_Tab)
+        for _ in range(MOST_LINKS if isinstance(focused, QTextBrowser) else 1):  # Tab goes through its links first
+            QTest.keyClick(focused, Qt.Key.Key_Tab)
+            if QApplication.focusWidget() is not focused:
+                break
     assert QApplication.focusWidget() is (stops[0] if stops else None), f"Tab is kept by {_called(stops[-1])}"
     assert all(window.isAncestorOf(one) for one in stops)
     return stops

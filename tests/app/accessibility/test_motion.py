@@ -94,8 +94,9 @@ def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(q
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     shell.show()
-    for step in (StepId.PATIENT, StepId.SENSORS):
-        shell.show_page(step, QWidget())
+    shell.show_page(StepId.PATIENT, QWidget())
+    shell.begin_fade()
+    shell.show_page(StepId.SENSORS, QWidget())
     fades = [one for one in shell.findChildren(QWidget) if type(one).__name__ == "_Fade"]
     assert len(fades) == 1
     assert fades[0].isVisible() is not is_less

@@ -154,6 +154,8 @@ def test_a_source_that_vanishes_costs_the_others_nothing_and_comes_back(start: S
     time.sleep(0.2)
     source.vanish()
     wait_for(lambda: acquisition.status()["a-left_thigh"].silent_s > 0.3)
+    silent_s = acquisition.silent_s()
+    assert silent_s["a-left_thigh"] > max(0.3, silent_s["b-left_thigh"])
     assert acquisition.status()["b-left_thigh"].silent_s < 0.3
     back_s = time.monotonic()
     source.come_back()

@@ -10,7 +10,7 @@ from app.cli import devices as devices_command
 from app.cli.devices import list_devices
 from app.cli.main import main
 from app.importing import untrusted_files
-from app.system import allowed_drivers
+from app.system import kept_json
 from app.system.allowed_drivers import allow_drivers
 from devices.files.limited_reader import LimitedReader
 from devices.files.session_folder import read_session
@@ -24,7 +24,7 @@ from tests.other_authors import install_plugin, site_of_others, write_package
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     reader = LimitedReader()  # that of the program may run already, with other packages
     monkeypatch.setattr(untrusted_files, "the_reader", lambda: reader)
-    monkeypatch.setattr(allowed_drivers, "_place", lambda: tmp_path / "drivers.json")
+    monkeypatch.setattr(kept_json, "place_of", tmp_path.joinpath)
     monkeypatch.setattr(devices_command, "own_radio", lambda: None)
     monkeypatch.setattr(devices_command, "search", lambda **_: SearchResult(broken=(failure(),)))
     yield from site_of_others(tmp_path, monkeypatch)

@@ -13,6 +13,7 @@ import pytest
 
 from app.exports.c3d_angles import write_c3d
 from app.exports.fhir_bundle import bundle
+from app.exports.figures import SIMULATED
 from app.exports.opensim_motion import write_motion
 from app.exports.spreadsheet import write_spreadsheet
 from app.exports.summary import summarise
@@ -212,11 +213,24 @@ def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session,
     json.dumps(reported, allow_nan=False)
 
 
+def test_a_workbook_of_simulated_data_states_it_in_its_first_row(
+    visit: tuple[Session, Analysis], tmp_path: Path
+) -> None:
+    session, analysis = visit
+    for is_simulated in (True, False):
+        path = tmp_path / f"{is_simulated}.xlsx"
+        write_spreadsheet(session, replace(analysis, is_simulated=is_simulated), path)
+        first = openpyxl.load_workbook(path)["About"]["A2"].value
+        assert (first == SIMULATED) is is_simulated
+
+
 def test_a_workbook_has_no_number_where_a_figure_is_not_reported(
     visit: tuple[Session, Analysis], mixed: RecordingAnalysis, tmp_path: Path
 ) -> None:
     write_spreadsheet(visit[0], changed(visit, mixed), tmp_path / "book.xlsx")
     book = openpyxl.load_workbook(tmp_path / "book.xlsx")
+    header, *rows = book["Summary"].iter_rows(values_only=True)
+    assert {row[header.index("mean")] for row in rows if row[header.index("status")] == "Not reported"} == {None}
     header, *rows = book["Strides"].iter_rows(values_only=True)
     for row in rows:
         reported = dict(zip(header, row, strict=True))

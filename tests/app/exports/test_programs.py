@@ -1,4 +1,4 @@
-"""The manual names the programs that opened our files: each by a test, with the version that it was run with."""
+"""The site names the programs that opened our files: each by a test, with the version that it was run with."""
 
 import importlib
 import re
@@ -8,10 +8,10 @@ import pytest
 
 from tests.other_programs import version_in_node, version_in_python
 
-HELP = Path(__file__).parents[3] / "resources" / "help"
+SITE = Path(__file__).parents[3] / "packaging" / "site" / "pages"
 TITLES = {
-    "files.md": "### Programs that opened these files",
-    "de/files.md": "### Programme, die diese Dateien geöffnet haben",
+    "en/validation.md": "## Programs that opened the files",
+    "de/validation.md": "## Programme, die die Dateien geöffnet haben",
 }
 ROW = re.compile(r"\| `?(?P<file>[^|`]+)`? \| (?P<program>\S+) (?P<version>[\d.]+) \| (?P<what>[^|]+) \|")
 NPM, OFFICE = "npm:", "soffice"
@@ -76,7 +76,7 @@ def version_of(package: str) -> str:
 
 
 def rows(page: str) -> list[re.Match[str]]:
-    _, table = (HELP / page).read_text(encoding="utf-8").split(TITLES[page])
+    _, table = (SITE / page).read_text(encoding="utf-8").split(TITLES[page])
     lines = [line for line in table.split("\n## ")[0].splitlines() if line.startswith("| ")][1:]
     found = [ROW.fullmatch(line) for line in lines]
     assert all(found), lines
@@ -84,7 +84,7 @@ def rows(page: str) -> list[re.Match[str]]:
 
 
 @pytest.mark.parametrize("page", TITLES)
-def test_every_program_that_the_manual_names_has_its_tests(page: str) -> None:
+def test_every_program_that_the_site_names_has_its_tests(page: str) -> None:
     named = [(one["file"], one["program"]) for one in rows(page)]
     assert named == list(PROGRAMS)
     for _, *tests in PROGRAMS.values():

@@ -12,13 +12,15 @@ from PySide6.QtGui import QImage, QPainter
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.films.film import SCENE_S, SCENES, Film, duration_s, film_height, paint_frame, paint_stills
+from app.films.film import SCENE_S, SCENES, Film, captions, duration_s, film_height, paint_frame, paint_stills
 from app.films.free_motion import BEND, CIRCLE, FOOT, LENGTHS_M, OTHER_WAY, leg_m
 from app.help import help_reader
 from app.help.help_page import HelpPage
 from app.help.help_topics import Topic
+from app.help.topic_text import plain_words_of
 from app.theme.current import current_theme, set_scale
 from app.theme.theme import Theme
+from app.wording.translation import tr, use_language
 from core.body import Side
 
 WIDTH = 700.0
@@ -63,6 +65,28 @@ def test_limbs_keep_their_lengths_and_circles_go_both_ways() -> None:
             assert [math.dist(*ends) for ends in pairwise(points)] == pytest.approx(LENGTHS_M)
     one_way, other_way = leg_m(Side.LEFT, CIRCLE, 0.2)[2], leg_m(Side.LEFT, OTHER_WAY, 0.2)[2]
     assert (one_way[0], one_way[1]) == pytest.approx((0.84 - other_way[0], other_way[1]))
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("topic", [Topic.SENSORS, Topic.FREE_MOTION])
+def test_the_scenes_of_a_film_are_in_words_below_it(page: HelpPage, topic: Topic, language: str) -> None:
+    use_language(language)
+    try:
+        page.show_topic(topic)
+        film = Film.SENSOR_PLACEMENT if topic is Topic.SENSORS else Film.FREE_MOTION
+        lines = page.text.toPlainText().replace("\u2028", "\n").splitlines()
+        stated = [f"{k}. {tr(scene.title)}: {tr(scene.words)}" for k, scene in enumerate(SCENES[film], start=1)]
+        at = lines.index(stated[0])
+        assert lines[at : at + len(stated)] == stated
+        assert tr(SCENES[film][0].words).casefold() in plain_words_of(topic)  # so that the search finds it
+    finally:
+        use_language("en")
+
+
+def test_captions_have_the_words_of_every_scene() -> None:
+    for film in Film:
+        assert captions(film).count("\n") == len(SCENES[film]) - 1
+        assert [scene for scene in SCENES[film] if scene.words not in captions(film)] == []
 
 
 def scroll_to_film(page: HelpPage) -> QPoint:

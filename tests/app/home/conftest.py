@@ -14,6 +14,7 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system import kept_json
 from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
@@ -24,7 +25,7 @@ from tests.app.home.home_library import PASSPHRASE, open_library
 def tables_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     """Where this test keeps what is stated of tables."""
     place = tmp_path / "config" / "tables.json"
-    monkeypatch.setattr("app.system.known_tables._place", lambda: place)
+    monkeypatch.setattr(kept_json, "place_of", place.with_name)
     return place
 
 

@@ -344,6 +344,7 @@ def test_simulated_is_stated_in_header_and_charts_and_only_then(
 
 
 def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
+    results.quality.engineering.click()
     rows = [line.split("\t") for line in results.quality.facts.as_text().split("\n")]
     assert rows == [
         ["", "left knee", "right knee", "left ankle", "right ankle"],
@@ -366,6 +367,7 @@ def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
 
 
 def test_findings_are_reported_the_gravest_first(results: ResultPage) -> None:
+    results.quality.engineering.click()
     reported = [row.accessibleName() for row in results.quality.findings.findChildren(FindingRow)]
     assert [text.split(":")[0] for text in reported] == ["serious", "warning", "info"]
     assert "0.42 s" in reported[1]

@@ -409,6 +409,7 @@ def test_where_heights_alone_are_not_reported_no_joint_is_called_so(page: Result
 
 def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:
     assert "not_a_hinge" in {finding.key for finding in analysis.findings}
+    page.quality.engineering.click()
     stated = page.quality.findings.accessibleDescription()
     assert "simulated" in stated
     assert "more than one axis" not in stated

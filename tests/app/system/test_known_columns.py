@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.system import known_columns as module
+from app.system import kept_json
 from app.system.known_columns import keep_columns, known_columns
 from devices.drivers.csv_serial import Columns
 
@@ -13,7 +13,7 @@ COLUMNS = Columns(0, (1, 2, 3), (4, 5, 6), signs=(1, 1, -1, 1, 1, 1), count=7)
 
 def test_columns_are_kept_by_what_is_plugged_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     place = tmp_path / "not there yet" / "columns.json"
-    monkeypatch.setattr(module, "_place", lambda: place)
+    monkeypatch.setattr(kept_json, "place_of", place.with_name)
     assert known_columns() == {}
     keep_columns(["0403:6001 A1", "/dev/ttyS4"], COLUMNS)
     other = Columns(0, (4, 5, 6), (1, 2, 3))
@@ -24,5 +24,5 @@ def test_columns_are_kept_by_what_is_plugged_in(monkeypatch: pytest.MonkeyPatch,
 @pytest.mark.parametrize("damaged", ["", "[]", '{"a": 5}', '{"a": {"columns": {"time": 1}}}', '{"a": {"columns": []}}'])
 def test_what_cannot_be_read_is_left_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, damaged: str) -> None:
     (tmp_path / "columns.json").write_text(damaged)
-    monkeypatch.setattr(module, "_place", lambda: tmp_path / "columns.json")
+    monkeypatch.setattr(kept_json, "place_of", tmp_path.joinpath)
     assert known_columns() == {}

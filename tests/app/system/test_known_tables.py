@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.system import known_tables as module
+from app.system import kept_json
 from app.system.known_tables import keep_table, known_tables
 from devices.files.table_choices import NO_CHOICES, NONE, TableChoices
 
@@ -19,7 +19,7 @@ KEPT = replace(STATED, acc=("2", "3", "4"), gyr=("5", "6", "7"), time="1")
 @pytest.fixture
 def place(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     place = tmp_path / "not there yet" / "tables.json"
-    monkeypatch.setattr(module, "_place", lambda: place)
+    monkeypatch.setattr(kept_json, "place_of", place.with_name)
     return place
 
 

@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
 from app.home.settings.drivers_card import DriversCard
-from app.system import allowed_drivers
+from app.system import kept_json
 from app.system.allowed_drivers import DriverPackage, allow_drivers, driver_packages, other_drivers
 from app.widgets.toggle import Toggle
 from app.wizard.sensors.sources import Sources
@@ -31,7 +31,7 @@ OFFER = Driver("stranger", "Stranger", "By nothing at all.", None, Protocol, (11
 @pytest.fixture(autouse=True)
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "settings" / "drivers.json"
-    monkeypatch.setattr(allowed_drivers, "_place", lambda: file)
+    monkeypatch.setattr(kept_json, "place_of", file.with_name)
     return file
 
 

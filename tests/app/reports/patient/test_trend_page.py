@@ -115,14 +115,19 @@ def test_the_page_is_in_the_report_where_visits_were_given(demo: ReportRequest) 
     assert with_it["pages"][-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
 
 
-def test_the_page_of_a_return_to_an_alignment_is_that_alignments(demo: ReportRequest) -> None:
+def returned_to_a(demo: ReportRequest) -> AnalysedVisit:
+    """Its visit, whose walk shown is alignment A again."""
     again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
     session = demo.visit.session
     recordings = tuple(
         replace(one, condition="Alignment A again", alignment=again) if one.name == demo.shown else one
         for one in session.recordings
     )
-    visit = AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
+    return AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
+
+
+def test_the_page_of_a_return_to_an_alignment_is_that_alignments(demo: ReportRequest) -> None:
+    visit = returned_to_a(demo)
     seen = visits(walk(31, condition="Alignment A"), walk(52, condition="Alignment A"))
     pages = report_data(replace(demo, visit=visit, course=tuple(seen)))["pages"]
     assert pages[-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
@@ -131,13 +136,7 @@ def test_the_page_of_a_return_to_an_alignment_is_that_alignments(demo: ReportReq
 def test_an_earlier_visit_without_the_alignment_that_was_returned_to_is_stated_with_that_alignment(
     demo: ReportRequest,
 ) -> None:
-    again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
-    session = demo.visit.session
-    recordings = tuple(
-        replace(one, condition="Alignment A again", alignment=again) if one.name == demo.shown else one
-        for one in session.recordings
-    )
-    visit = AnalysedVisit(replace(session, recordings=recordings), demo.visit.analysis)
+    visit = returned_to_a(demo)
     (_, paragraph) = not_compared_page(replace(demo, visit=visit, earlier=demo.visit))
     assert "has no walk in this condition (\u2068Alignment A\u2069)" in str(paragraph["said"])
 

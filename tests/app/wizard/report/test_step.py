@@ -32,6 +32,7 @@ from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.results import Analysis
 from core.session import RecordingKind, Session
+from tests.app.drawn_clips import drawn_clip
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
 from tests.simulated import analysis_of
@@ -498,3 +499,30 @@ def test_a_second_session_of_a_day_is_proposed_a_folder_of_its_own(tmp_path: Pat
     for taken in ("P-1_2026-11-23", "P-1_2026-11-23_2"):
         (tmp_path / taken).mkdir()
     assert free_name(tmp_path, "P-1_2026-11-23") == "P-1_2026-11-23_3"
+
+
+def test_pictures_of_the_video_are_in_the_report_only_where_somebody_chose_them(
+    qtbot: QtBot, step: ReportStep, visit: Visit, analysis: Analysis
+) -> None:
+    report = step.page.report
+    assert not report.video.isVisible()
+    request = step.request()
+    assert request is not None
+    walk = next(one for one in analysis.recordings if one.name == request.walks[-1])
+    clip = drawn_clip(walk, size=(320, 180))
+    visit.clips.opened.emit((replace(clip, sync=None),))
+    assert not report.video.isVisible()  # nobody knows which moment a frame is of
+    visit.clips.opened.emit((clip,))
+    assert report.video.isVisible()
+    request = step.request()
+    assert request is not None
+    assert request.key_frames == ()
+    report.video.click()
+    request = step.request()
+    assert request is not None
+    assert len(request.key_frames) in (4, 8)
+    visit.clips.opened.emit(())
+    assert not report.video.isVisible()
+    request = step.request()
+    assert request is not None
+    assert request.key_frames == ()

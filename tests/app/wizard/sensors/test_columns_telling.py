@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.system import kept_json
 from app.system import known_columns as kept
 from app.wizard.sensors.columns_form import ColumnsForm, Meaning
 from app.wizard.sensors.sources import COLUMNS, SEARCH
@@ -68,7 +69,7 @@ def asked(qtbot: QtBot, step: SensorsStep) -> ColumnsForm:
 def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     qtbot: QtBot, visit: Visit, step: SensorsStep, place: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(kept, "_place", lambda: tmp_path / "columns.json")
+    monkeypatch.setattr(kept_json, "place_of", tmp_path.joinpath)
     form = asked(qtbot, step)
     assert form.isVisible()
     assert step.telling.columns == EMULATED

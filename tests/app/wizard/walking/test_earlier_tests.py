@@ -46,6 +46,17 @@ def with_visits(*days: tuple[str, float, str]) -> Callable[[OpenedLibrary], UUID
     return add
 
 
+def read_control(qtbot: QtBot, visit: Visit, session_id: object) -> TimedControl:
+    """Of a session that is taken up, once the earlier visits are read."""
+    assert isinstance(session_id, UUID)
+    with qtbot.waitSignal(visit.resumed, timeout=10_000):
+        visit.resume(session_id)
+    control = TimedControl(visit, visit)
+    with qtbot.waitSignal(control.changed, timeout=10_000):
+        control.earlier.read()
+    return control
+
+
 def test_the_latest_earlier_result_under_the_same_condition_is_named(
     qtbot: QtBot, controller: LibraryController, visit: Visit
 ) -> None:
@@ -108,12 +119,7 @@ def test_a_test_after_the_return_to_an_alignment_is_beside_those_of_that_alignme
     qtbot: QtBot, controller: LibraryController, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session_id = asked(qtbot, controller, with_visits(("2026-10-03", 11.4, "Alignment A")))
-    assert isinstance(session_id, UUID)
-    with qtbot.waitSignal(visit.resumed, timeout=10_000):
-        visit.resume(session_id)
-    control = TimedControl(visit, visit)
-    with qtbot.waitSignal(control.changed, timeout=10_000):
-        control.earlier.read()
+    control = read_control(qtbot, visit, session_id)
     walk = timed(UP, time_s=9.0)
     again = AlignmentChange("Alignment B", (), returns_to="Alignment A")
     (stated,) = recordings((walk, "Alignment A again"))
@@ -139,11 +145,6 @@ def test_a_test_that_was_broken_off_is_no_earlier_result(
     qtbot: QtBot, controller: LibraryController, visit: Visit
 ) -> None:
     session_id = asked(qtbot, controller, with_visits(("2026-10-03", 11.4, SHOES), ("2026-10-20", float("nan"), SHOES)))
-    assert isinstance(session_id, UUID)
-    with qtbot.waitSignal(visit.resumed, timeout=10_000):
-        visit.resume(session_id)
-    control = TimedControl(visit, visit)
-    with qtbot.waitSignal(control.changed, timeout=10_000):
-        control.earlier.read()
+    control = read_control(qtbot, visit, session_id)
     assert control.before(SHOES) == {UP: "3 Oct: 11.4\N{NO-BREAK SPACE}s"}
     assert control.result() is None  # of a session without a walk

@@ -66,6 +66,13 @@ def test_lanes_hold_whole_phases_in_their_order_and_the_last_one_lasts(usual: li
     assert [span.phase for span in usual[-1].lanes[Side.LEFT].spans][-1] is Phase.FOOT_FLAT  # is again
 
 
+def test_a_lane_is_another_object_only_where_it_has_changed(usual: list[WalkingReadout]) -> None:
+    for side in Side:
+        lanes = [state.lanes[side] for state in usual]
+        assert all((one is two) == (one == two) for one, two in pairwise(lanes))
+        assert sum(one is not two for one, two in pairwise(lanes)) < len(lanes) / 3
+
+
 def test_strides_and_cadence_are_reported_while_somebody_walks(usual: list[WalkingReadout]) -> None:
     assert math.isnan(usual[5].cadence_steps_min)
     assert usual[len(usual) // 2].cadence_steps_min == pytest.approx(112.0, abs=8.0)

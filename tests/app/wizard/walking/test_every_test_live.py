@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 
 import pytest
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
@@ -22,6 +22,7 @@ from devices.simulation.replay import DEMONSTRATION_NAMES
 from devices.simulation.walker import FreeMotion, Standing, Tissue, WalkerSettings
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.walking.shown_step import shown_step
 
 RUN, NEXT_TEST, COURSE, LEAVE = map(
     Intent, (KeyAction.RUN, KeyAction.NEXT_TEST, KeyAction.ENTER_FIELDS, KeyAction.LEAVE)
@@ -56,18 +57,8 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
         visit.recordings.stop()
     qtbot.waitUntil(lambda: bool(rests_of(visit.recordings.every)), timeout=PATIENCE_MS)
     visit.rests = rests_of(visit.recordings.every)
-    step = WalkingStep(visit)
-    qtbot.addWidget(step.page)
-    step.page.resize(1064, 660)
-    step.page.show()
-    step.enter()
-    timer = QTimer()
-    timer.setInterval(10)
-    timer.timeout.connect(step.tick)
-    timer.start()
-    yield step
-    timer.stop()
-    step.leave()
+    with shown_step(qtbot, visit, 660) as step:
+        yield step
 
 
 def choose(step: WalkingStep, protocol: TimedProtocol) -> None:

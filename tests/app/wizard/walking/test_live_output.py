@@ -12,7 +12,6 @@ from typing import Any
 
 import pylsl
 import pytest
-from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 from websockets.sync.client import connect
 
@@ -25,6 +24,7 @@ from core.body import LEG_JOINTS, Site
 from core.session import Patient, RecordingKind
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.walking.shown_step import shown_step
 from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.endurance  # walks that are recorded
@@ -41,17 +41,8 @@ def step(
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
     live_output.set_up(OutputSettings(has_lsl=True, has_websocket=True, port=0))
     assert live_output.port
-    step = WalkingStep(visit)
-    qtbot.addWidget(step.page)
-    step.page.resize(1064, 600)
-    step.page.show()
-    timer = QTimer()
-    timer.setInterval(10)
-    timer.timeout.connect(step.tick)
-    timer.start()
-    yield step
-    timer.stop()
-    step.leave()
+    with shown_step(qtbot, visit, is_entered=False) as step:
+        yield step
     live_output.stop()
 
 
@@ -135,11 +126,32 @@ def test_nothing_that_leaves_names_a_person_or_this_computer(
     left = listener.received + "\n".join([*headers, *(line[0] for line in lines)]).encode()
     details = recording.details
     names = {
-        "qxzvq", "1957", "prosthe", "female", details.name, details.folder, details.condition,
+        "qxzvq", "prosthe", "female", details.name, details.folder, details.condition,
         str(recording.id), str(tmp_path), socket.gethostname(), getuser(), "/home", "websockets/", "python/",
     }  # fmt: skip
     found = left.lower()
     assert [name for name in names if len(name) > 2 and name.lower().encode() in found] == []
+    assert not states_year(left.decode(errors="replace"))
+
+
+def states_year(text: str) -> bool:
+    """Whether a text states the year of birth, not merely its digits within an angle, a count or a stream's uid."""
+    uid, decimal = r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}", r"(?<![\d.])\d+\.\d+(?![\d.])"
+    count = r'"(?:first|samples|events)":\d+'
+    rest = re.sub(f"{uid}|{decimal}|{count}", "", text)
+    return re.search(rf"(?<!\d){PLANTED.birth_year}(?!\d)", rest) is not None
+
+
+@pytest.mark.parametrize("text", ['{"birth_year":1957}', "<desc>1957-03-02</desc>", "DEMO-1957", "born 2.3.1957"])
+def test_a_year_of_birth_is_found(text: str) -> None:
+    assert states_year(text)
+
+
+@pytest.mark.parametrize(
+    "text", ['{"knee":12.1957}', '{"t":1957.25}', "3f2a7c1e-1957-4b1d-9c5e-0123456789ab", "219571", '{"samples":1957}']
+)
+def test_digits_of_a_measured_value_are_no_year_of_birth(text: str) -> None:
+    assert not states_year(text)
 
 
 def test_a_whole_walk_is_received_each_sample_once_where_it_was_switched_on_from_the_page(

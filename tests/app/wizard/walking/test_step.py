@@ -1,10 +1,9 @@
 """The Walking step on the demonstration patient: Space starts and stops, walks are kept or not, losses are stated."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -27,8 +26,9 @@ from core.session import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, TargetTally, tallies_of
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
-from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import BEHIND_S, PATIENCE_MS, PatientTime
 from tests.app.wizard.pressing import press
+from tests.app.wizard.walking.shown_step import shown_step
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -40,18 +40,8 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     """Of a patient who wears six sensors, entered, and looked at as the wizard does."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
-    step = WalkingStep(visit)
-    qtbot.addWidget(step.page)
-    step.page.resize(1064, 600)
-    step.page.show()
-    step.enter()
-    timer = QTimer()
-    timer.setInterval(10)
-    timer.timeout.connect(step.tick)
-    timer.start()
-    yield step
-    timer.stop()
-    step.leave()
+    with shown_step(qtbot, visit) as step:
+        yield step
 
 
 def calibrate(qtbot: QtBot, visit: Visit, patient_time: PatientTime) -> None:
@@ -321,8 +311,9 @@ def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
         step.on_intent(RUN)
     (row,) = step.page.received.rows
     assert row.site is Site.RIGHT_FOOT
-    assert row.counts.expected - row.counts.received == pytest.approx(150, abs=10)
-    assert row.counts.longest_gap_s == pytest.approx(1.5, abs=0.1)
+    # what a reader has not passed on yet when the sensor falls silent or wakes belongs to the silence or not
+    assert row.counts.longest_gap_s == pytest.approx(1.5, abs=2 * BEHIND_S)
+    assert row.counts.expected - row.counts.received == pytest.approx(100.0 * row.counts.longest_gap_s, abs=3)
     assert not step.page.received.isHidden()
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
@@ -363,8 +354,7 @@ def test_while_no_sensor_is_received_the_charts_go_on_with_a_gap(
     acquisition, shown = visit.sensors.acquisition, list[WalkingReadout]()
     assert acquisition is not None
     monkeypatch.setattr(step.page, "show_view", shown.append)
-    silent = {name: replace(status, silent_s=4.0) for name, status in acquisition.status().items()}
-    monkeypatch.setattr(acquisition, "status", lambda: silent)
+    monkeypatch.setattr(acquisition, "silent_s", lambda: dict.fromkeys(acquisition.sensors, 4.0))
     qtbot.waitUntil(lambda: len(shown) > 3 and set(shown[-1].missing) == set(visit.sensors.site_of.values()))
     silent_since_s = shown[-1].now_s
     qtbot.waitUntil(lambda: shown[-1].now_s > silent_since_s, timeout=PATIENCE_MS)
@@ -382,16 +372,15 @@ def test_while_no_sensor_is_received_no_walk_is_started(
     assert (primary.text, primary.is_enabled) == ("Start walk", True)
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
-    silent = {name: replace(status, silent_s=4.0) for name, status in acquisition.status().items()}
-    monkeypatch.setattr(acquisition, "status", lambda: silent)
+    silent_s = dict.fromkeys(acquisition.sensors, 4.0)
+    monkeypatch.setattr(acquisition, "silent_s", lambda: silent_s)
     with qtbot.waitSignal(step.changed, timeout=5000):
         pass
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
     assert step.bar().note.startswith("No signal from any sensor. Switch the sensors on, or move the receiver closer")
-    one_received = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
-    monkeypatch.setattr(acquisition, "status", lambda: one_received)
+    silent_s[acquisition.sensors[0]] = 0.0  # one is received
     with qtbot.waitSignal(step.changed, timeout=5000):
         pass
     primary = step.bar().primary

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 
 from app.wizard.keys import Intent, KeyAction
@@ -16,6 +15,7 @@ from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.walking.shown_step import shown_step
 from tests.simulated import session_of
 
 RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
@@ -42,18 +42,8 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     patient_time.wait(qtbot, 4.0)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.recordings.stop()
-    step = WalkingStep(visit)
-    qtbot.addWidget(step.page)
-    step.page.resize(1064, 600)
-    step.page.show()
-    step.enter()
-    timer = QTimer()
-    timer.setInterval(10)
-    timer.timeout.connect(step.tick)
-    timer.start()
-    yield step
-    timer.stop()
-    step.leave()
+    with shown_step(qtbot, visit) as step:
+        yield step
 
 
 def is_for_clicker(step: WalkingStep) -> bool:

@@ -1,0 +1,229 @@
+"""A camera beside the walk: FFmpeg's test picture in its place, through the real process into the library."""
+
+from collections.abc import Iterator
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.recorder import Recorder
+from app.storage.stored import StoredClip
+from app.storage.videos.reader import open_clip
+from app.storage.videos.writer import ClipWriter
+from app.wizard import clips
+from app.wizard.keys import Intent, KeyAction
+from app.wizard.visit import Visit
+from app.wizard.walking import camera_control
+from app.wizard.walking.step import WalkingStep
+from core.body import Site
+from core.session import RecordingKind
+from core.video.clip import Clip, Sync, SyncBy
+from devices.cameras.camera import TEST_PICTURE, V4L2, CameraInfo
+from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.walking.shown_step import shown_step
+
+CAMERA = CameraInfo("Test picture", "testsrc2=size=640x360:rate=30", TEST_PICTURE)
+OTHER = CameraInfo("Other picture", "testsrc=size=320x240:rate=15", TEST_PICTURE)
+FOUND = Sync(-0.1, 0.03, SyncBy.MOTION)
+RUN = Intent(KeyAction.RUN)
+
+
+@pytest.fixture
+def cameras() -> list[CameraInfo]:
+    return [CAMERA]
+
+
+@pytest.fixture
+def step(
+    qtbot: QtBot,
+    visit: Visit,
+    worn: dict[str, Site],
+    patient_time: PatientTime,
+    cameras: list[CameraInfo],
+    monkeypatch: pytest.MonkeyPatch,
+) -> Iterator[WalkingStep]:
+    """Looked at as the wizard does, with these cameras."""
+    monkeypatch.setattr(camera_control, "find_cameras", lambda: tuple(cameras))
+    begin(qtbot, visit, worn)
+    record(qtbot, visit, RecordingKind.FREE_MOTION, 1.0)
+    with shown_step(qtbot, visit, 672) as step:
+        yield step
+
+
+def switch_on(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    """With consent, until it sends."""
+    qtbot.waitUntil(lambda: step.page.camera.isVisible(), timeout=PATIENCE_MS)
+    step.page.camera.switch.click()
+    if not visit.clips.has_consent:
+        step.page.camera.agree.click()
+    qtbot.waitUntil(lambda: bool(step.camera.feeds), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: all(feed.latest is not None for feed in step.camera.feeds), timeout=PATIENCE_MS)
+
+
+def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, frames: int) -> None:
+    """Until each camera has given so many frames of it."""
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: all(feed.taken >= frames for feed in step.camera.feeds), timeout=PATIENCE_MS)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+
+
+def clips_of(qtbot: QtBot, visit: Visit, count: int = 1) -> list[StoredClip]:
+    qtbot.waitUntil(lambda: sum(map(len, visit.clips.stored.values())) >= count, timeout=PATIENCE_MS)
+    return [clip for clips in visit.clips.stored.values() for clip in clips]
+
+
+def test_without_a_camera_there_is_no_card(qtbot: QtBot, step: WalkingStep, cameras: list[CameraInfo]) -> None:
+    qtbot.waitUntil(lambda: step.page.camera.isVisible(), timeout=PATIENCE_MS)
+    cameras.clear()
+    step.camera.look()
+    qtbot.waitUntil(lambda: step.page.camera.isHidden(), timeout=PATIENCE_MS)
+
+
+def test_no_camera_runs_before_the_patient_agreed(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    card = step.page.camera
+    qtbot.waitUntil(card.isVisible, timeout=PATIENCE_MS)
+    assert (card.facts.text(), card.notice.isVisible()) == ("Camera is off.", False)
+    card.switch.click()
+    assert "has not agreed" in card.notice.text
+    assert step.camera.feeds == ()
+    card.agree.click()
+    qtbot.waitUntil(lambda: bool(step.camera.feeds), timeout=PATIENCE_MS)
+    assert card.notice.text == "Faces are recorded. Video stays in this library."
+    qtbot.waitUntil(lambda: not card.pictures[0].pixmap().isNull(), timeout=PATIENCE_MS)
+    assert not card.pictures[1].isVisible()
+    card.switch.click()
+    assert step.camera.feeds == ()
+    assert card.pictures[0].pixmap().isNull()  # nothing of it stays in sight
+
+
+def test_a_walk_has_the_frames_that_came_during_it(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    switch_on(qtbot, step, visit)
+    walk(qtbot, step, visit, frames=20)
+    (stored,) = clips_of(qtbot, visit)
+    assert stored.frames >= 20
+    assert (stored.camera, stored.view, stored.width, stored.height) == (1, "from the left", 640, 360)
+    clip = opened(qtbot, visit, stored)
+    assert len(clip.pictures) == stored.frames
+    assert all(clip.pictures.jpeg(number)[:2] == b"\xff\xd8" for number in range(len(clip.pictures)))
+    assert (clip.stamped_s[1:] > clip.stamped_s[:-1]).all()
+    (row,) = step.page.rows
+    assert "video 0:0" in row.note
+
+
+@pytest.mark.parametrize("cameras", [[CAMERA, OTHER]])
+def test_two_cameras_have_a_clip_each(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
+    qtbot.waitUntil(step.page.camera.isVisible, timeout=PATIENCE_MS)
+    step.camera.choose_camera(2)
+    switch_on(qtbot, step, visit)
+    walk(qtbot, step, visit, frames=8)
+    clips_of(qtbot, visit, 2)
+    # both are looked into, though the second comes while the first is
+    qtbot.waitUntil(lambda: [clip.sync for clip in clips_of(qtbot, visit, 2)] == [FOUND, FOUND], timeout=PATIENCE_MS)
+    found = clips_of(qtbot, visit, 2)
+    assert [(clip.camera, clip.view) for clip in found] == [(1, "from the left"), (2, "from the right")]
+
+
+def test_a_camera_that_ends_costs_the_video_and_never_the_walk(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    switch_on(qtbot, step, visit)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    (feed,) = step.camera.feeds
+    qtbot.waitUntil(lambda: feed.taken >= 5, timeout=PATIENCE_MS)
+    feed.kill()
+    qtbot.waitUntil(lambda: "goes on without video" in step.page.camera.notice.text, timeout=PATIENCE_MS)
+    assert visit.recordings.is_recording
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    (stored,) = clips_of(qtbot, visit)
+    assert stored.frames >= 5
+    (recorded,) = visit.recordings.walks
+    assert recorded.read_back is not None
+    assert recorded.read_back.imu
+
+
+def test_who_agrees_no_longer_has_no_video_left(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    switch_on(qtbot, step, visit)
+    walk(qtbot, step, visit, frames=3)
+    clips_of(qtbot, visit)
+    step.page.camera.switch.click()
+    assert step.page.camera.withdraw.isVisible()
+    step.page.camera.withdraw.click()
+    assert step.camera.dialog is not None
+    assert visit.clips.stored  # until it is confirmed
+    step.camera.dialog.answers["withdraw"].click()
+    qtbot.waitUntil(lambda: not visit.clips.stored, timeout=PATIENCE_MS)
+    assert not visit.clips.has_consent
+    state = visit.controller.state
+    assert state is not None
+    assert list(state.library.videos.glob("*.journal")) == []
+
+
+def test_under_the_lock_no_camera_runs(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    switch_on(qtbot, step, visit)
+    visit.controller.lock()
+    assert step.camera.feeds == ()
+    assert step.page.camera.pictures[0].pixmap().isNull()
+
+
+def opened(qtbot: QtBot, visit: Visit, stored: StoredClip) -> Clip:
+    state = visit.controller.state
+    assert state is not None
+    return open_clip(state.library, stored, "walk")
+
+
+@pytest.mark.parametrize("cameras", [[CAMERA, CameraInfo("Real one", "/dev/video0", V4L2)]])
+def test_in_the_demonstration_nobodys_face_is_filmed(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its library lies plain on the disk."""
+    qtbot.waitUntil(step.page.camera.isVisible, timeout=PATIENCE_MS)
+    shown = step.camera.shown
+    assert shown is not None
+    assert shown.cameras[:2] == ("Test picture", "Real one")
+    state = visit.controller.state
+    assert state is not None
+    monkeypatch.setattr(type(state), "is_demonstration", property(lambda _state: True))
+    step.camera.look()
+    qtbot.waitUntil(lambda: step.camera.shown is not None and step.camera.shown.cameras == ("Test picture",))
+
+
+def test_a_full_disk_ends_the_video_and_never_the_walk(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    switch_on(qtbot, step, visit)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    (feed,) = step.camera.feeds
+    qtbot.waitUntil(lambda: feed.taken >= 3, timeout=PATIENCE_MS)
+    assert "disk" not in step.page.camera.notice.text
+    monkeypatch.setattr(ClipWriter, "has_ended", property(lambda _writer: True))
+    qtbot.waitUntil(lambda: "no space left for video" in step.page.camera.notice.text, timeout=PATIENCE_MS)
+    assert feed.writer is None
+    assert visit.recordings.is_recording
+    clips_of(qtbot, visit)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+
+
+def test_a_walk_that_the_library_does_not_know_yet_has_no_video(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    switch_on(qtbot, step, visit)
+    with monkeypatch.context() as without_row:
+        without_row.setattr(Recorder, "has_row", property(lambda _recorder: False))
+        with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+            step.on_intent(RUN)
+        assert "This walk has no video." in step.page.camera.notice.text
+        (feed,) = step.camera.feeds
+        assert feed.writer is None
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    walk(qtbot, step, visit, frames=3)  # the next has one, and nothing more is said of the first
+    (stored,) = clips_of(qtbot, visit)
+    assert stored.recording_id == visit.recordings.walks[-1].id
+    assert "no video" not in step.page.camera.notice.text
