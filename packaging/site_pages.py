@@ -1,20 +1,46 @@
 """The site's pages, put together from the manual, from what is written for the site alone, and from the code itself.
 
-Used by `build_site.py`. Nothing here needs the site's builder.
+Used by `build_site.py`. Nothing here needs the site's builder. A page that is written for the site may hold
+`<!-- README: Install -->`, in whose place that section of README is put, `<!-- benchmarks -->` for the measured figures
+and `<!-- drawing: NAME -->` for `drawings/NAME.svg`: nothing is written twice. `<!-- sentence: PAGE, BEGINNING -->` is
+the sentence of another page that so begins, `<!-- row: PAGE, FIRST CELL -->` the row of a table in words;
+`<!-- version -->`, `<!-- licence -->` and `<!-- citation -->` are those of CITATION.cff.
 """
 
 import ast
 import re
 import shutil
 from collections.abc import Iterator, Mapping
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from posixpath import normpath
+
+from site_commands import commands_page
+from site_reference import method_functions_page, public_pages
 
 ROOT = Path(__file__).resolve().parents[1]
 HELP = ROOT / "resources" / "help"
 WRITTEN = ROOT / "packaging" / "site" / "pages"
 EXAMPLES = ROOT / "tests" / "examples"
+BENCHMARKS = ROOT / "tests" / "benchmarks" / "README.md"
 LANGUAGES = ("en", "de")
-IMAGE = re.compile(r"!\[([^\]]*)\]\(([\w/-]+)\.(png|webp)\)")
+PLACE = re.compile(
+    r"<!-- (README|drawing): ([\w -]+) -->|<!-- (sentence|row): ([\w-]+), (.+?) -->"
+    r"|<!-- (benchmarks|version|licence|citation) -->"
+)
+ENGLISH_LINK = re.compile(r"\[([^\]]+)\]\((\.\./[\w/-]+)\.md\)")
+OF_SITE = re.compile("(?:project's site|Website des Projekts), [“„](.+?)[”“]")
+"""How the manual of the application, which has no such pages, names one of the site."""
+SITE_PAGES = {
+    "Limits and measurement errors": "limits",
+    "Grenzen und Messfehler": "limits",
+    "Validation": "validation",
+    "Validierung": "validation",
+    "File formats": "formats",
+}
+IN_ENGLISH_ONLY = ("formats",)
+FIRST = ("index", "quick-start", "python")
+LINK = re.compile(r"(?<!!)\[([^\]]+)\]\(([^)\s]+)\)")
+IMAGE = re.compile(r"!\[([^\]]*)\]\(([\w/-]+)\.(png|svg|webp)\)")
 FILM_WORDS = {"en": "Play the film", "de": "Film abspielen"}
 NOT_EXAMPLES = ("conftest", "test_")
 
@@ -27,18 +53,154 @@ def assemble(into: Path) -> None:
         manual = HELP if language == "en" else HELP / language
         shutil.copytree(manual / "pictures", folder / "manual" / "pictures")
         for page in manual.glob("*.md"):
-            text = with_both_themes(page.read_text(encoding="utf-8"), FILM_WORDS[language])
+            captioned = with_captions(page.read_text(encoding="utf-8"), language)
+            text = with_both_themes(with_pages_of_site(captioned, language), FILM_WORDS[language])
             (folder / "manual" / page.name).write_text(text, encoding="utf-8")
-        (folder / "reference").mkdir()
-        shutil.copyfile(WRITTEN / "extra.css", folder / "extra.css")
-        for page in (WRITTEN / language).glob("*.md"):
-            text = with_both_themes(page.read_text(encoding="utf-8"), FILM_WORDS[language])
-            place = folder if page.stem == "index" else folder / "reference"
-            (place / page.name).write_text(text, encoding="utf-8")
-    (into / "en" / "reference" / "columns.md").write_text(columns_page(), encoding="utf-8")
-    (into / "en" / "examples").mkdir()
+        for name in ("extra.css", "extra.js"):
+            shutil.copyfile(WRITTEN / name, folder / name)
+        for page in (WRITTEN / language).rglob("*.md"):
+            place = place_of(page.relative_to(WRITTEN / language))
+            text = with_both_themes(filled(page.read_text(encoding="utf-8"), place), FILM_WORDS[language])
+            _write(folder / place, text if language == "en" else with_english_pages(text))
+    made = {"columns": columns_page(), "commands": commands_page(), **public_pages()}
+    methods = [page.read_text(encoding="utf-8") for page in sorted((into / "en" / "methods").glob("*.md"))]
+    made["methods-api"] = method_functions_page(methods)
+    for name, text in made.items():
+        _write(into / "en" / "reference" / f"{name}.md", text)
     for name, text in example_pages().items():
-        (into / "en" / "examples" / f"{name}.md").write_text(text, encoding="utf-8")
+        _write(into / "en" / "examples" / f"{name}.md", text)
+
+
+def with_pages_of_site(page: str, language: str) -> str:
+    """Link to the pages of the site that the manual names; KeyError for one that is not known here."""
+
+    def linked(found: re.Match[str]) -> str:
+        name = SITE_PAGES[found[1]]
+        if language != "en" and name in IN_ENGLISH_ONLY:
+            return f'<a href="../../reference/{name}.html" hreflang="en">{found[1]}</a>'
+        return f"[{found[1]}](../reference/{name}.md)"
+
+    return OF_SITE.sub(linked, page)
+
+
+def with_english_pages(page: str) -> str:
+    """Link to English pages, which no list of the page's own language has, as they are in the finished site."""
+    return ENGLISH_LINK.sub(r'<a href="\2.html" hreflang="en">\1</a>', page)
+
+
+def place_of(page: Path) -> PurePosixPath:
+    """Where the site has a page that is written for it; those in no folder are reference, but for the first."""
+    return PurePosixPath(page.as_posix() if page.parent.name or page.stem in FIRST else f"reference/{page.name}")
+
+
+def _write(file: Path, text: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+
+
+def filled(page: str, place: PurePosixPath) -> str:
+    """The text of a page at `place` of the site, with what it takes from elsewhere."""
+
+    def taken(found: re.Match[str]) -> str:
+        kind, name, cut, page_name, beginning, word = found.groups()
+        if cut:
+            source = _english(page_name)
+            return sentence_of(source, beginning) if cut == "sentence" else row_of(source, beginning)
+        if kind == "README":
+            return with_links_of_site(readme_section(name), PurePosixPath(), place)
+        if kind == "drawing":
+            drawing = (WRITTEN / "drawings" / f"{name}.svg").read_text(encoding="utf-8")
+            return f'<div class="drawing" tabindex="0">\n{drawing.strip()}\n</div>'
+        if word != "benchmarks":
+            return cited()[word]
+        text = BENCHMARKS.read_text(encoding="utf-8").partition("\n")[2].strip()  # the page has a title of its own
+        return with_links_of_site(text, PurePosixPath("tests/benchmarks"), place)
+
+    return PLACE.sub(taken, page)
+
+
+def readme_section(title: str) -> str:
+    """What README has below a heading, up to the next of its kind."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    found = re.search(rf"(?ms)^## {re.escape(title)}\n(.*?)(?=^## |\Z)", readme)
+    if found is None:
+        raise ValueError(f"README has no section {title}")
+    return found[1].strip()
+
+
+def cited() -> Mapping[str, str]:
+    """What CITATION.cff has of the project itself: `version`, `licence` and a line to cite, `citation`."""
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    own = dict(re.findall(r"(?m)^(\w[\w-]*): (\S.*)$", text))
+    (authors,) = re.findall(r"(?m)^  - name: (.+)$", text)
+    line = f"{authors}: {own['title']}, version {own['version']}, {own['date-released'][:4]}."
+    return {"version": own["version"], "licence": own["license"], "citation": line}
+
+
+def _english(name: str) -> str:
+    """A page of the manual, or one that is written for the site."""
+    manual = HELP / f"{name}.md"
+    return (manual if manual.is_file() else WRITTEN / "en" / f"{name}.md").read_text(encoding="utf-8")
+
+
+def sentence_of(page: str, beginning: str) -> str:
+    """The only sentence of a page with this beginning."""
+    found = re.findall(rf"(?m)(?:^|(?<=[ -] )|(?<=\. ))({re.escape(beginning)}.*?[.])(?= |$)", page)
+    if len(found) != 1:
+        raise ValueError(f"{len(found)} sentences begin with {beginning}")
+    return str(found[0])
+
+
+def row_of(page: str, first: str) -> str:
+    """The only row with this first cell, each other cell that is not empty after the title of its column."""
+    tables = re.findall(r"(?m)^(\|.*)\n\|(?:---\|)+\n((?:\|.*(?:\n|$))+)", page)
+    rows = [(head, row) for head, body in tables for row in body.splitlines() if row.startswith(f"| {first} |")]
+    if len(rows) != 1:
+        raise ValueError(f"{len(rows)} rows begin with {first}")
+    titles, cells = ([cell.strip() for cell in line.strip("|").split("|")] for line in rows[0])
+    return ", ".join(f"{title.lower()} {cell}" for title, cell in zip(titles[1:], cells[1:], strict=True) if cell)
+
+
+def with_links_of_site(text: str, folder: PurePosixPath, place: PurePosixPath) -> str:
+    """Turn links of a page in `folder` of the sources to those of a page at `place`; what the site lacks is named."""
+
+    def turned(found: re.Match[str]) -> str:
+        words, target = found.groups()
+        if "://" in target or target.startswith("#"):
+            return found[0]
+        path, _, part = target.partition("#")
+        source = PurePosixPath(normpath(folder / path))
+        there = site_place(source)
+        if there is None:
+            return f"{words} (`{source}` in the sources)"
+        up = "../" * len(place.parent.parts)
+        return f"[{words}]({up}{there}{'#' + part if part else ''})"
+
+    return LINK.sub(turned, text)
+
+
+def site_place(source: PurePosixPath) -> PurePosixPath | None:
+    """Where the site has a file or folder of the sources; None where it has not."""
+    known = {"tests/benchmarks/README.md": "accuracy/benchmarks.md", "tests/examples": "examples/index.md"}
+    if source.as_posix() in known:
+        return PurePosixPath(known[source.as_posix()])
+    if source.parent.as_posix() == "resources/help":
+        return PurePosixPath("manual", source.name)
+    pages = PurePosixPath("packaging/site/pages/en")
+    return place_of(Path(source.relative_to(pages))) if source.is_relative_to(pages) else None
+
+
+def with_captions(page: str, language: str) -> str:
+    """Put the captions of the application below each film, in the language of the page."""
+    from app.films import film
+    from app.wording.translation import spoken_language, use_language
+
+    before = spoken_language()
+    use_language(language)
+    try:
+        return film.with_captions(page)
+    finally:
+        use_language(before)
 
 
 def with_both_themes(page: str, film_words: str) -> str:
@@ -46,11 +208,11 @@ def with_both_themes(page: str, film_words: str) -> str:
 
     def shown(found: re.Match[str]) -> str:
         alt, name, kind = found.groups()
+        still = "-stills.png" if kind == "webp" else f".{kind}"
         stills = "".join(
-            f"![{alt}]({name}{dark}{'-stills' if kind == 'webp' else ''}.png#only-{theme})"
-            for theme, dark in (("light", ""), ("dark", "-dark"))
+            f"![{alt}]({name}{dark}{still}#only-{theme})" for theme, dark in (("light", ""), ("dark", "-dark"))
         )
-        if kind == "png":
+        if kind != "webp":
             return stills
         film = "".join(
             f'<img alt="{alt}" src="{name}{dark}.webp#only-{theme}" loading="lazy">'

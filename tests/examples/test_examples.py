@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from core.body import Joint, Side, Site
-from core.samples import ImuBlock
 from devices.clocks.host_clock import host_time_ns
 from devices.simulation.walker import SimulatedSession
+from tests.example_sessions import frames_of_new_sensor, last_block, write_counted_lines
 from tests.examples import (
     analyse_a_folder,
     events_of_one_foot,
@@ -45,10 +45,6 @@ class FastClock:
 
     def end(self) -> None:
         self._ended_ns = round(1e9 * FOR_EVER_S)
-
-
-def walk_of(simulated: SimulatedSession, site: Site) -> ImuBlock:
-    return simulated.session.recordings[-1].imu[site]
 
 
 def numbers(printed: str, pattern: str) -> list[float]:
@@ -90,15 +86,11 @@ def test_the_published_method_finds_the_range_of_a_knee(
 def test_files_of_a_new_format_become_a_session(
     simulated: SimulatedSession, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    files = {"thigh": Site.LEFT_THIGH, "shank": Site.LEFT_SHANK}
-    for name, site in files.items():
-        block = walk_of(simulated, site)
-        rows = np.column_stack([np.round(100 * block.time_s), np.rad2deg(block.gyr_rad_s), block.acc_m_s2 / G_M_S2])
-        kept = np.delete(rows, slice(50, 53), axis=0)
-        np.savetxt(tmp_path / f"{name}.csv", kept, delimiter=",", header="counter,gx,gy,gz,ax,ay,az", comments="")
+    for name, site in {"thigh": Site.LEFT_THIGH, "shank": Site.LEFT_SHANK}.items():
+        write_counted_lines(last_block(simulated, site), tmp_path / f"{name}.csv")
     session = tmp_path / "session"
     new_file_format.main(tmp_path / "thigh.csv", tmp_path / "shank.csv", session)
-    count = len(walk_of(simulated, Site.LEFT_THIGH)) - 3
+    count = len(last_block(simulated, Site.LEFT_THIGH)) - 3
     assert capsys.readouterr().out.splitlines() == [
         f"left_thigh: {count} samples, 3 missing",
         f"left_shank: {count} samples, 3 missing",
@@ -109,14 +101,8 @@ def test_files_of_a_new_format_become_a_session(
 def test_a_new_sensor_is_understood_and_its_losses_are_counted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    frames = []
-    for number in range(300):  # its counter starts again once
-        body = new_sensor.FRAME.pack(0xA5, number % 256, number, -5, 0, 0, 0, 981, 0, 0)[:-2]
-        frames.append(body + bytes([sum(body) % 256, 0x5A]))
-    frames[20] = frames[20][:4] + b"\x7f" + frames[20][5:]  # damaged, so it is lost as well
-    del frames[100:102]
     file = tmp_path / "bytes"
-    file.write_bytes(b"".join(frames) + frames[-1][:7])
+    file.write_bytes(frames_of_new_sensor())  # what is damaged is lost as well
     new_sensor.main(file)
     counts, last = capsys.readouterr().out.splitlines()
     assert counts == "297 received, 3 lost, 1 damaged"
@@ -145,7 +131,7 @@ def port(simulated: SimulatedSession) -> Iterator[tuple[str, FastClock]]:
     import termios
     import tty
 
-    block, clock = walk_of(simulated, Site.LEFT_FOOT), FastClock()
+    block, clock = last_block(simulated, Site.LEFT_FOOT), FastClock()
     rows = np.column_stack([1000 * block.time_s, np.rad2deg(block.gyr_rad_s), block.acc_m_s2 / G_M_S2])
     own, theirs = os.openpty()
     tty.setraw(theirs)

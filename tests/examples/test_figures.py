@@ -1,19 +1,16 @@
 """Every example with a figure prints what is true of a simulated patient, and draws it."""
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
-from core.timed.protocols import PlannedTest, TimedProtocol
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side
 from devices.files.session_folder import write_session
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
-from devices.simulation.walker_body import CourseKind
-from devices.simulation.walker_courses import draw_course, simulate_course
+from devices.simulation.walker import SimulatedSession
+from tests.example_sessions import TWO_WALKS, up_and_go, write_own_arrays
 from tests.examples import (
     angles_as_a_frame,
     axes_of_a_joint,
@@ -28,13 +25,10 @@ from tests.examples import (
 )
 from tests.simulated import simulation_of
 
-SLOW, FAST = 0.9, 1.3
-
 
 @pytest.fixture(scope="module")
 def walked() -> SimulatedSession:
-    walks = (Walk("slow", speed_m_s=SLOW, strides=7), Walk("fast", speed_m_s=FAST, strides=7))
-    return simulation_of(WalkerSettings(seed=7, recordings=(Standing(), FreeMotion(), *walks)))
+    return simulation_of(TWO_WALKS)
 
 
 @pytest.fixture(scope="module")
@@ -92,10 +86,7 @@ def test_walks_are_compared(
 
 
 def test_a_timed_test_has_its_parts(tmp_path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    course = simulate_course(replace(draw_course(CourseKind.UP_AND_GO, 1), sites=LEG_SITES))
-    *before, walk = course.session.recordings
-    planned = replace(walk, test=PlannedTest(TimedProtocol.UP_AND_GO))
-    write_session(replace(course.session, recordings=(*before, planned)), tmp_path / "session")
+    write_session(up_and_go(), tmp_path / "session")
     timed_test.main(tmp_path / "session", out)
     head, *parts = capsys.readouterr().out.splitlines()
     (whole_s,) = map(float, re.findall(r"([\d.]+) s", head))
@@ -124,12 +115,7 @@ def test_the_axes_are_the_true_ones(
 def test_arrays_of_ones_own_become_a_session(
     walked: SimulatedSession, tmp_path: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    imu = walked.session.recordings[-1].imu
-    arrays = {
-        name: np.column_stack([imu[site].time_s, imu[site].gyr_rad_s, imu[site].acc_m_s2])
-        for name, site in {"A": Site.LEFT_THIGH, "B": Site.LEFT_SHANK, "C": Site.LEFT_FOOT}.items()
-    }
-    np.savez(tmp_path / "samples.npz", allow_pickle=False, **arrays)
+    write_own_arrays(walked, tmp_path / "samples.npz")
     own_sensor_positions.main(tmp_path / "samples.npz", out)
     printed = capsys.readouterr().out
     assert re.search(r"knee_shape_deg +no_zero +[4-8]\n", f"{printed}\n")
