@@ -3,6 +3,7 @@
 Also the age of what it paints, and whether its thread is ever held up.
 
     python -m tests.benchmarks.live_window [--rate 100] [--size 1280 800] [--seconds 60] [--curves 18] [--analyses]
+        [--camera]
 
 The application itself on a display of its own (Xvfb) leads a whole session with the simulated patient, from home to
 the results, and records a walk of so many seconds; readers, journal, estimator and frames are all in its process.
@@ -13,7 +14,8 @@ frames: how long each of our threads was at work in it, and how long it was read
 processor; and how long a process beside that does nothing but beat was silent. A machine that is still is no
 fault of the window. With `--curves 18` frames are those of a page that draws the rates of six sensors about three
 axes, instead of the walking page, for as long. One analysis runs beside the walk, as ever, to find the ankles' axes;
-with `--analyses` one after the other all the time.
+with `--analyses` one after the other all the time. With `--camera` FFmpeg's test picture of 1280 x 720 pixels is
+recorded beside the walk, 30 times a second; the process that takes it makes it as well, which a camera does itself.
 """
 
 import argparse
@@ -29,10 +31,11 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
+from tests.app.watchdog import Watchdog, open_schedstat, schedstat_s
 from tests.benchmarks.own_display import own_display, own_environment
 from tests.driver import HIDDEN, options
 
@@ -47,6 +50,7 @@ PATIENCE_S = 180.0
 PAUSE_S = 0.7  # at each stop, for what is drawn after it
 DUE_S = 1 / 30
 BEAT_S = 0.02
+WATCH_MS = 20  # four times as far apart as in tests, where a watchdog may cost what it likes
 KEPT = "at_work_and_kept_ms"
 
 
@@ -56,7 +60,6 @@ def lead(required: argparse.Namespace) -> dict[str, Any]:
 
     from app import main_window
     from app.wizard.sensors import sources
-    from tests.app.watchdog import Watchdog
 
     sources.choices = lambda: (_source(required.rate, required.seconds),)  # before the wizard takes it from there
     measured: dict[str, Any] = {}
@@ -65,7 +68,7 @@ def lead(required: argparse.Namespace) -> dict[str, Any]:
 
     def begun(window: "MainWindow", *arguments: Any, **named: Any) -> None:
         init(window, *arguments, **named)
-        dog = Watchdog()
+        dog = Watchdog(beat_ms=WATCH_MS)
         script = _session(window, required, measured)
         state: dict[str, Any] = {"until": lambda: True, "since_s": time.monotonic()}
 
@@ -76,6 +79,7 @@ def lead(required: argparse.Namespace) -> dict[str, Any]:
                 elif time.monotonic() - state["since_s"] > PATIENCE_S + required.seconds:
                     raise TimeoutError("the session does not go on")
             except StopIteration:
+                timer.stop()  # the window may take several polls to close
                 dog.stop()
                 measured["late"] = [str(late) for late in dog.late]
                 window.close()
@@ -157,6 +161,11 @@ def _session(
     yield lambda: wizard.step_id is StepId.WALKING
     yield lambda: not visit.evaluation.is_busy
     yield _after(PAUSE_S)
+    feed = None
+    if required.camera:
+        walking = wizard.steps[StepId.WALKING]
+        yield from _camera_on(walking)
+        (feed,) = walking.camera.feeds  # type: ignore[attr-defined]  # it is the walking step
     wizard.press_primary()
     yield lambda: wizard.is_recording
     yield _after(8.0)  # until every joint has its angle
@@ -167,6 +176,8 @@ def _session(
     wait = _after(required.seconds)
     yield _asking_again(wizard.steps[StepId.WALKING], wait) if required.analyses else wait
     measured |= watch.end() | {"analyses": len(done)}
+    if feed is not None:
+        measured["camera"] = f"{feed.taken} frames, {feed.mode}"
     if bench is not None:
         window.screens.setCurrentWidget(wizard)
         yield _after(PAUSE_S)
@@ -183,6 +194,19 @@ def _session(
     yield _after(PAUSE_S)
     wizard.leave()
     yield _after(2 * PAUSE_S)
+
+
+def _camera_on(walking: Any) -> Iterator[Callable[[], bool]]:
+    from app.wizard.walking import camera_control
+    from devices.cameras.camera import TEST_PICTURE, CameraInfo
+
+    camera = CameraInfo("Test picture", "testsrc2=size=1280x720:rate=30", TEST_PICTURE)
+    setattr(camera_control, "find_cameras", lambda: (camera,))  # noqa: B010  as if it were connected
+    walking.camera.look()
+    yield lambda: walking.camera.shown is not None
+    walking.camera.turn(True)
+    walking.camera.agree()
+    yield lambda: bool(walking.camera.feeds) and walking.camera.feeds[0].latest is not None
 
 
 def _after(seconds: float) -> Callable[[], bool]:
@@ -228,6 +252,7 @@ class _Watch:
         self._acquisition = visit.sensors.acquisition
         self._painted_s: list[float] = []
         self._spent: list[dict[str, Spent]] = []  # at each of these
+        self._threads_spent = _Spent()
         self._age_s: list[float] = []
         self._shown_to_s: dict[int, float] = {}
         self._first: Any = None
@@ -243,15 +268,17 @@ class _Watch:
             self._first = item
         if item is self._first:
             self._painted_s.append(time.perf_counter())
-            self._spent.append(_spent())
+            self._spent.append(self._threads_spent.read())
         for trace in item._traces.values():
             shown_to_s = self._shown_to_s.get(id(trace), trace.last_s)
-            new = trace.time_s[(trace.time_s > shown_to_s) & np.isfinite(trace.angle_deg)]
+            first = int(trace.time_s.searchsorted(shown_to_s, side="right"))
+            new = trace.time_s[first:][np.isfinite(trace.angle_deg[first:])]
             self._age_s += (now_s - new).tolist()
             self._shown_to_s[id(trace)] = trace.last_s
 
     def end(self) -> dict[str, Any]:
         _Watch.current = None
+        self._threads_spent.close()
         elapsed_s = time.perf_counter() - self._begin_s
         cpu_s = time.process_time() - self._cpu
         threads = {
@@ -323,14 +350,26 @@ def longest_gap(painted_s: Sequence[float], spent: Sequence[Mapping[str, Spent]]
     return {"ms": gap_ms, "since_s": round(painted_s[k], 3), KEPT: threads}
 
 
-def _spent() -> dict[str, Spent]:
-    """What each of our threads has spent."""
-    reported = {}
-    for thread in threading.enumerate():
-        with suppress(OSError):  # it has just ended
-            busy_ns, kept_ns, _ = Path(f"/proc/self/task/{thread.native_id}/schedstat").read_text().split()
-            reported[thread.name] = int(busy_ns) / 1e9, int(kept_ns) / 1e9
-    return reported
+class _Spent:
+    """What each of our threads has spent. Their files stay open: opening them in every frame cost more than a point."""
+
+    def __init__(self) -> None:
+        self._files: dict[int, BinaryIO] = {}
+
+    def read(self) -> dict[str, Spent]:
+        reported = {}
+        for thread in threading.enumerate():
+            if (native_id := thread.native_id) is None:
+                continue
+            with suppress(OSError):  # it has just ended
+                if native_id not in self._files:
+                    self._files[native_id] = open_schedstat(native_id)
+                reported[thread.name] = schedstat_s(self._files[native_id])
+        return reported
+
+    def close(self) -> None:
+        for file in self._files.values():
+            file.close()
 
 
 class _Beside(threading.Thread):
@@ -393,6 +432,7 @@ def main() -> None:
         seconds=(60.0, "of the walk"),
         curves={"type": int, "choices": [0, 18], "default": 0},
         analyses=False,
+        camera=False,
         inside=(False, HIDDEN),
     )
     if required.inside:

@@ -3,7 +3,7 @@
     python -m tests.benchmarks.speed [--seeds 3] [--repeats 5]
 
 CPU seconds of one core. The methods take turns on every recording; ratios are taken turn by turn, then their median.
-The result is printed and kept at the end of tests/benchmarks/README.md.
+The result is printed and kept in tests/benchmarks/README.md.
 """
 
 import os
@@ -252,8 +252,9 @@ def main() -> None:
         *accuracy_table(trials, outcomes, methods),
     ]
     print("\n".join(lines))
-    before, _, _ = README.read_text(encoding="utf-8").partition(LAST)
-    README.write_text("\n".join([f"{before}{LAST}", *lines, ""]), encoding="utf-8")
+    before, _, rest = README.read_text(encoding="utf-8").partition(LAST)
+    _, next_title, after = rest.partition("\n## ")
+    README.write_text("\n".join([f"{before}{LAST}", *lines, f"{next_title}{after}"]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.benchmarks.live_window import KEPT, _spent, longest_gap
+from tests.benchmarks.live_window import KEPT, _Spent, longest_gap
 
 BUSY = "import time\nuntil = time.monotonic() + 5\nwhile time.monotonic() < until: pass"
 
@@ -28,12 +28,14 @@ def test_work_and_being_kept_from_it_are_reported_apart() -> None:
     one = min(os.sched_getaffinity(0))
     script = f"""
 import json, os, subprocess, sys, time
-from tests.benchmarks.live_window import _spent
+from tests.benchmarks.live_window import _Spent
 os.sched_setaffinity(0, {{{one}}})
 others = [subprocess.Popen([sys.executable, "-c", {BUSY!r}]) for _ in range(2)]
-before, begin = _spent()["MainThread"], time.monotonic()
+spent = _Spent()
+before, begin = spent.read()["MainThread"], time.monotonic()
 while time.monotonic() < begin + 0.5: pass
-after = _spent()["MainThread"]
+after = spent.read()["MainThread"]
+spent.close()
 for other in others: other.kill()
 print(json.dumps([b - a for a, b in zip(before, after)]))
 """
@@ -41,6 +43,8 @@ print(json.dumps([b - a for a, b in zip(before, after)]))
     busy_s, kept_s = json.loads(reported)
     assert busy_s + kept_s == pytest.approx(0.5, abs=0.1)
     assert kept_s > 0.1
-    before = _spent()["MainThread"]
+    spent = _Spent()
+    before = spent.read()["MainThread"]
     time.sleep(0.05)
-    assert sum(_spent()["MainThread"]) - sum(before) < 0.05
+    assert sum(spent.read()["MainThread"]) - sum(before) < 0.05
+    spent.close()

@@ -3,7 +3,8 @@
     python -m tests.validation [--people 10] [--write]
 
 Public recordings are made into session folders in a temporary folder and go through `gaitwright agree`; they are left
-out where GAITWRIGHT_TEST_DATA does not name the shared data. `--write` puts the tables into resources/help/accuracy.md.
+out where GAITWRIGHT_TEST_DATA does not name the shared data. `--write` puts the tables into the manual's page Accuracy
+and into the site's page Validation.
 """
 
 import contextlib
@@ -31,7 +32,9 @@ from tests.driver import options
 from tests.validation.paper_experiment import PROSTHESIS, against_bones, experiment
 from tests.validation.recordings_with_references import HINGES, recordings_with_references
 
-PAGE = Path(__file__).parents[2] / "resources" / "help" / "accuracy.md"
+ROOT = Path(__file__).parents[2]
+ACCURACY = ROOT / "resources" / "help" / "accuracy.md"
+SIMULATED = ROOT / "packaging" / "site" / "pages" / "en" / "validation.md"
 RECORDINGS, EXPERIMENT, WHY = (
     "## Public recordings",
     "## The experiment of the paper, simulated",
@@ -174,9 +177,8 @@ def main() -> None:
     required = options(
         __doc__,
         people=(10, "simulated people in the paper's experiment"),
-        write=(False, f"put the tables into {PAGE.name}"),
+        write=(False, f"put the tables into {ACCURACY.name} and {SIMULATED.name}"),
     )
-    page = PAGE.read_text(encoding="utf-8")
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     tables = {EXPERIMENT: list(experiment_table(required.people)), WHY: list(why_table(min(5, required.people)))}
     if reported:
@@ -185,9 +187,9 @@ def main() -> None:
         print("GAITWRIGHT_TEST_DATA is not set: the public recordings are left out.", file=sys.stderr)
     for title, table in tables.items():
         print(title, "", *table, "", sep="\n")
-        page = with_table(page, title, table)
-    if required.write:
-        PAGE.write_text(page, encoding="utf-8")
+        if required.write:
+            place = ACCURACY if title == RECORDINGS else SIMULATED
+            place.write_text(with_table(place.read_text(encoding="utf-8"), title, table), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from core.body import LEG_JOINTS, Joint
 from devices.files.references.reading import read_reference
 from devices.files.session_folder import write_session
 from devices.simulation.walker import Tissue, simulate
-from tests.validation.__main__ import EXPERIMENT, PAGE, RECORDINGS, WHY, agreed, row_of, with_table
+from tests.validation.__main__ import ACCURACY, EXPERIMENT, RECORDINGS, SIMULATED, WHY, agreed, row_of, with_table
 from tests.validation.paper_experiment import FASTER, LATER_S, experiment, settings
 from tests.validation.recordings_with_references import HINGES, feet, hinge
 
@@ -78,9 +78,8 @@ def test_a_table_takes_the_place_of_the_one_under_its_heading_alone() -> None:
         with_table(page, "## D", ["| new |"])
 
 
-def test_the_page_has_a_table_under_each_heading_that_the_command_fills() -> None:
-    page = PAGE.read_text(encoding="utf-8")
-    for title in (RECORDINGS, EXPERIMENT, WHY):
-        after = page.partition(f"{title}\n")[2].partition("\n## ")[0]
+def test_the_pages_have_a_table_under_each_heading_that_the_command_fills() -> None:
+    for place, title in ((ACCURACY, RECORDINGS), (SIMULATED, EXPERIMENT), (SIMULATED, WHY)):
+        after = place.read_text(encoding="utf-8").partition(f"{title}\n")[2].partition("\n## ")[0]
         assert "| - | - |" not in after
         assert after.count("\n|") >= 4
