@@ -1,8 +1,9 @@
 """Make the list of parts that others made: `python packaging/soup.py`.
 
 `packaging/safety/soup.toml` gives for each why it is there, what fails if it is wrong, and which anomalies are known;
-`packaging/requirements.lock` has its version. Together they are `packaging/safety/soup.md`. A locked part that is
-in neither list of the TOML, or one that is not locked, is reported and nothing is written.
+the locks of `packaging`, that of development and that of what `start.py` installs, have its version. Together they are
+`packaging/safety/soup.md`. A locked part that is in neither list of the TOML, or one that is not locked, is reported
+and nothing is written.
 """
 
 import re
@@ -15,6 +16,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 SAFETY = ROOT / "packaging" / "safety"
+LOCKS = ("requirements.lock", "runtime.lock")
 LOCKED = re.compile(r"^([a-z0-9][\w.-]*)==([^\s;]+)", re.MULTILINE)
 
 
@@ -39,8 +41,9 @@ def parts() -> list[Soup]:
 
 
 def locked() -> dict[str, str]:
-    """Give every part of the lock, with its version."""
-    return dict(LOCKED.findall((ROOT / "packaging" / "requirements.lock").read_text(encoding="utf-8")))
+    """Give every part of the locks, with its version."""
+    texts = [(ROOT / "packaging" / lock).read_text(encoding="utf-8") for lock in LOCKS]
+    return dict(LOCKED.findall("\n".join(texts)))
 
 
 def faults() -> Iterator[str]:
