@@ -24,7 +24,10 @@ def written_pages() -> list[Path]:
     """Give the pages that are committed, but for those of the site alone, whose links lead into the site."""
     folders = ("packaging", "resources", "tests", ".github")
     below = [page for folder in folders for page in (ROOT / folder).rglob("*.md")]
-    return [*ROOT.glob("*.md"), *(page for page in below if "site" not in page.parts and page.name not in MADE)]
+    return [
+        *ROOT.glob("*.md"),
+        *(page for page in below if "site" not in page.relative_to(ROOT).parts and page.name not in MADE),
+    ]
 
 
 def lost_links(page: Path, text: str) -> list[str]:
@@ -96,26 +99,36 @@ def test_each_release_has_its_date_and_at_most_twenty_changes() -> None:
     assert len(CHANGELOG.read_bytes()) < 12_000
 
 
-@pytest.fixture
-def demonstration(tmp_path: Path) -> Path:
-    """The folder that `gaitwright demo` makes, as far as README's lines read it."""
-    recordings = (Standing(duration_s=2.0), FreeMotion(duration_s=5.0), Walk(strides=3))
+def demonstration(folder: Path, strides: int) -> Path:
+    """Make the folder that `gaitwright demo` makes, as far as README's lines read it."""
+    recordings = (Standing(duration_s=2.0), FreeMotion(duration_s=5.0), Walk(strides=strides))
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     simulated = simulate(WalkerSettings(seed=3, sites=sites, recordings=recordings))
-    write_session(simulated.session, tmp_path / "gaitwright-demo" / "session")
-    return tmp_path
+    write_session(simulated.session, folder / "gaitwright-demo" / "session")
+    return folder
 
 
-def test_the_python_of_the_readme_runs_as_printed_and_uses_public_names(
-    demonstration: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def printed_by_readme(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> str:
     (lines,) = re.findall(r"(?s)```python\n(.*?)```", README.read_text(encoding="utf-8"))
     assert len([line for line in lines.splitlines() if line]) == 10
     assert set(re.findall(r"(?m)^from ((?:core|devices|app)\S*)", lines)) == {"core", "devices"}
-    script = demonstration / "lines.py"
+    script = folder / "lines.py"
     script.write_text(lines, encoding="utf-8")
-    monkeypatch.chdir(demonstration)
+    monkeypatch.chdir(folder)
     runpy.run_path(str(script))
-    printed = re.findall(r"(?m)^walk 1, (\w+): (\d+)°, SD ([\d.]+)°$", capsys.readouterr().out)
+    return capsys.readouterr().out
+
+
+def test_the_python_of_the_readme_runs_as_printed_and_uses_public_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = printed_by_readme(demonstration(tmp_path, strides=5), monkeypatch, capsys)
+    printed = re.findall(r"(?m)^walk 1, (\w+): (\d+)°, SD ([\d.]+)°$", text)
     assert {name for name, _, _ in printed} == {"left_knee", "left_ankle"}
     assert all(50 < int(range_deg) < 80 for name, range_deg, _ in printed if name.endswith("knee"))
+
+
+def test_the_python_of_the_readme_prints_no_joint_that_is_not_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert printed_by_readme(demonstration(tmp_path, strides=3), monkeypatch, capsys) == ""

@@ -9,6 +9,7 @@ import pytest
 from babel.messages.pofile import read_po
 
 from app.wording.findings import SENTENCES
+from tests.safety.broken_controls import ROOT, controls
 
 PACKAGING = Path(__file__).parents[2] / "packaging"
 
@@ -38,6 +39,13 @@ def test_the_sentences_of_the_screen_are_those_of_the_catalogue(tables: ModuleTy
         ids = [one.id for one in read_po(file) if one.id]
     every = {text for one in ids for text in ([one] if isinstance(one, str) else one)}
     assert every | set(SENTENCES) == set(tables.sentences_of_screen())
+
+
+def test_each_control_that_is_broken_on_purpose_is_in_the_code_once(tables: ModuleType) -> None:
+    every = controls([])
+    found = {one: (ROOT / one.file).read_text(encoding="utf-8").count(one.find) for one in every}
+    assert [(one.requirement, one.what, count) for one, count in found.items() if count != 1] == []
+    assert {one.requirement for one in every} <= {one.id for one in tables.requirements()}
 
 
 def test_a_requirement_that_leads_nowhere_is_named(tables: ModuleType) -> None:

@@ -55,7 +55,12 @@ def test_what_runs_with_the_program_is_not_called_a_tool(soup: ModuleType) -> No
     listed = {name for part in soup.parts() for name in part.names}
     assert len(needed()) > 50
     assert sorted((needed() & soup.locked().keys()) - listed) == []
-    assert sorted(needed() - soup.locked().keys() - listed - {"keyring"}) == []
+    assert sorted(needed() - soup.locked().keys() - listed) == []
+
+
+def test_what_only_the_application_installs_is_listed_too(soup: ModuleType) -> None:
+    assert soup.locked()["keyring"]
+    assert "keyring" in {name for part in soup.parts() for name in part.names}
 
 
 def test_a_licence_is_the_one_that_the_part_shows_of_itself(soup: ModuleType) -> None:

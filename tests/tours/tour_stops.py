@@ -165,7 +165,8 @@ KEYBOARD: tuple[Stop, ...] = (
     Stop("07c-placed", states("All six sensors are assigned and connected"), ("press Return",), lingers_s=1.0),
     Stop("08a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
     Stop("08b-standing", is_recording, lingers_s=1.5),
-    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    # its pictures in both themes are taken before the page turns by itself, which it does after some 8 s
+    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=4.0),
     *walk(1, ("press 1", "press space"), "press space"),
     Stop("10d-keep", offers("Include 1"), ("press i",), lingers_s=1.0),
     *walk(2, ("press 2", "press space"), "press space"),
