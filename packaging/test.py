@@ -1,12 +1,17 @@
 """Check Gaitwright on a machine that has nothing but Python: `python3 packaging/test.py`.
 
 Without arguments every check runs, and the tests but the long ones. With arguments only pytest runs, with them:
-`test.py tests/core`, `test.py -m endurance`.
+`test.py tests/core`, `test.py -m endurance`. Tests that fail while others run beside them (`--numprocesses`) run once
+more by themselves: no test may depend on what else the computer does.
 """
 
+import json
 import os
 import subprocess
 import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
 
 from setup_environment import ROOT, TESTED, SetUpError, hand_over, prepare, say
 
@@ -17,6 +22,7 @@ CHECKS = (
     ("lint-imports",),
     ("pytest", "--numprocesses=2", "--dist=loadfile"),  # what a file prepares is prepared once
 )
+MOST_AGAIN = 5  # more that fail are no matter of a busy computer
 
 
 def main(arguments: list[str]) -> None:
@@ -30,17 +36,47 @@ def main(arguments: list[str]) -> None:
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     os.environ["PYTHONPYCACHEPREFIX"] = str(ROOT / ".venv" / "bytecode")
     if arguments:
-        hand_over([str(python.with_name("pytest")), *arguments])
+        pytest = [str(python.with_name("pytest")), *arguments]
+        if not _is_beside_others(arguments):
+            hand_over(pytest)
+        sys.exit(tested(pytest))
     failed = []
     for command, *options in CHECKS:
         name = " ".join((command, *options))
         say(f"\n== {name}")
-        if subprocess.call([python.with_name(command), *options]) != 0:
+        call = [str(python.with_name(command)), *options]
+        if (tested(call) if _is_beside_others(options) else subprocess.call(call)) != 0:
             failed.append(name)
     subprocess.call([python, "-m", "tests.sizes"])  # for whoever reads on: nothing is refused for its length
     if failed:
         sys.exit(f"\nFailed: {', '.join(failed)}.")
     say("\nEvery check passed.")
+
+
+def tested(pytest: Sequence[str]) -> int:
+    """Run `pytest`, what failed once more without another test beside it, and return pytest's exit code."""
+    with tempfile.TemporaryDirectory() as folder:
+        kept = [*pytest, "-o", f"cache_dir={folder}"]
+        code = subprocess.call(kept)
+        failed = _last_failed(Path(folder))
+        if code != 1 or not 0 < len(failed) <= MOST_AGAIN:
+            return code
+        say("\n== once more, by themselves")
+        code = subprocess.call([*kept, "--numprocesses=0", "--last-failed", "--last-failed-no-failures=none"])
+        for name in failed - _last_failed(Path(folder)):
+            say(f"Failed beside others and passed by itself: {name}")
+        return code
+
+
+def _last_failed(cache: Path) -> set[str]:
+    try:
+        return set(json.loads((cache / "v/cache/lastfailed").read_text(encoding="utf-8")))
+    except FileNotFoundError:  # nothing failed
+        return set()
+
+
+def _is_beside_others(options: Sequence[str]) -> bool:
+    return any(option.startswith("--numprocesses=") for option in options)
 
 
 if __name__ == "__main__":
