@@ -9,7 +9,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -22,7 +21,10 @@ CHECKS = (
     ("lint-imports",),
     ("pytest", "--numprocesses=2", "--dist=loadfile"),  # what a file prepares is prepared once
 )
+CACHE = ROOT / ".pytest_cache"
 MOST_AGAIN = 5  # more that fail are no matter of a busy computer
+LAST_FAILED = "cache/lastfailed"  # by pytest, below its cache
+CRASHED = "gaitwright/crashed"  # by tests/crashed.py, likewise: a test that ended its process
 
 
 def main(arguments: list[str]) -> None:
@@ -37,15 +39,15 @@ def main(arguments: list[str]) -> None:
     os.environ["PYTHONPYCACHEPREFIX"] = str(ROOT / ".venv" / "bytecode")
     if arguments:
         pytest = [str(python.with_name("pytest")), *arguments]
-        if not _is_beside_others(arguments):
+        if not is_beside_others(arguments):
             hand_over(pytest)
-        sys.exit(tested(pytest))
+        sys.exit(tested(pytest, CACHE))
     failed = []
     for command, *options in CHECKS:
         name = " ".join((command, *options))
         say(f"\n== {name}")
         call = [str(python.with_name(command)), *options]
-        if (tested(call) if _is_beside_others(options) else subprocess.call(call)) != 0:
+        if (tested(call, CACHE) if is_beside_others(options) else subprocess.call(call)) != 0:
             failed.append(name)
     subprocess.call([python, "-m", "tests.sizes"])  # for whoever reads on: nothing is refused for its length
     if failed:
@@ -53,30 +55,30 @@ def main(arguments: list[str]) -> None:
     say("\nEvery check passed.")
 
 
-def tested(pytest: Sequence[str]) -> int:
+def tested(pytest: Sequence[str], cache: Path) -> int:
     """Run `pytest`, what failed once more without another test beside it, and return pytest's exit code."""
-    with tempfile.TemporaryDirectory() as folder:
-        kept = [*pytest, "-o", f"cache_dir={folder}"]
-        code = subprocess.call(kept)
-        failed = _last_failed(Path(folder))
-        if code != 1 or not 0 < len(failed) <= MOST_AGAIN:
-            return code
-        say("\n== once more, by themselves")
-        code = subprocess.call([*kept, "--numprocesses=0", "--last-failed", "--last-failed-no-failures=none"])
-        for name in failed - _last_failed(Path(folder)):
-            say(f"Failed beside others and passed by itself: {name}")
+    for noted in (LAST_FAILED, CRASHED):
+        (cache / "v" / noted).unlink(missing_ok=True)
+    code = subprocess.call(pytest)
+    failed = _last_failed(cache)
+    if code != 1 or (cache / "v" / CRASHED).exists() or not 0 < len(failed) <= MOST_AGAIN:
         return code
+    say("\n== once more, by themselves")
+    code = subprocess.call([*pytest, "--numprocesses=0", "--last-failed", "--last-failed-no-failures=none"])
+    for name in sorted(failed - _last_failed(cache)):
+        say(f"Failed beside others and passed by itself: {name}")
+    return code
 
 
 def _last_failed(cache: Path) -> set[str]:
     try:
-        return set(json.loads((cache / "v/cache/lastfailed").read_text(encoding="utf-8")))
+        return set(json.loads((cache / "v" / LAST_FAILED).read_text(encoding="utf-8")))
     except FileNotFoundError:  # nothing failed
         return set()
 
 
-def _is_beside_others(options: Sequence[str]) -> bool:
-    return any(option.startswith("--numprocesses=") for option in options)
+def is_beside_others(options: Sequence[str]) -> bool:
+    return any(option.startswith("--numprocesses=") and option != "--numprocesses=0" for option in options)
 
 
 if __name__ == "__main__":

@@ -32,8 +32,10 @@ def running(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 def _tested(running: ModuleType, tmp_path: Path, tests: str) -> int:
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    (tmp_path / "conftest.py").write_text("from tests.crashed import pytest_handlecrashitem\n")
     (tmp_path / "test_it.py").write_text(tests)
-    code: int = running.tested([sys.executable, "-m", "pytest", "-q", "--numprocesses=1", str(tmp_path)])
+    call = [sys.executable, "-m", "pytest", "-q", "--numprocesses=1", str(tmp_path)]
+    code: int = running.tested(call, tmp_path / ".pytest_cache")
     return code
 
 
@@ -69,6 +71,18 @@ def test_more_failures_than_a_busy_computer_makes_do_not_run_again(
     many = "import pytest\n@pytest.mark.parametrize('k', range(6))\ndef test_broken(k):\n    assert False\n"
     assert _tested(running, tmp_path, many) == 1
     assert "once more" not in capfd.readouterr().err
+
+
+def test_a_crash_is_no_matter_of_a_busy_computer(
+    running: ModuleType, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    crashing = LOAD.replace("raise AssertionError", "__import__('os').abort()").replace("quiet", "sound")
+    assert _tested(running, tmp_path, crashing.replace("begun", "crashed") + LOAD) == 1
+    assert "once more" not in capfd.readouterr().err
+
+
+def test_a_run_in_one_process_is_pytests_alone(running: ModuleType) -> None:
+    assert [running.is_beside_others([f"--numprocesses={count}"]) for count in range(3)] == [False, True, True]
 
 
 def test_no_test_found_is_not_a_failure(running: ModuleType, tmp_path: Path) -> None:
