@@ -16,7 +16,9 @@ from hypothesis import settings
 from PySide6.QtCore import QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
+from tests.crashed import pytest_handlecrashitem as pytest_handlecrashitem  # noted for packaging/test.py
 from tests.simulated import STORE
+from tests.waiting import wait_patiently
 from tests.wrappers import Wrappers
 
 # a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
@@ -30,6 +32,7 @@ COLLECTIONS = 60  # of young objects, until the old ones are looked through: tha
 _BEGUN: set[Path] = set()
 _WRAPPERS = Wrappers()
 _WRAPPERS.watch()
+wait_patiently()
 gc.disable()  # for good: what is imported is there to stay, and the rest is collected between tests
 
 

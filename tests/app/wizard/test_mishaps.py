@@ -116,7 +116,7 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     recordings.refused.connect(lambda *words: reported.append(words))
     recordings.stop()
     qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
-    assert "When Gaitwright next starts, it finds what was written" in reported[-1][1]
+    assert "next starts" in reported[-1][1]  # what was written, or the whole: the disk may be done by then
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()  # it has been, at once
 
