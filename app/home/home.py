@@ -21,6 +21,7 @@ from app.home.patients.demonstration import FillingDemonstration
 from app.home.patients.home_page import HomePage
 from app.home.patients.notices import LibraryNotices
 from app.home.patients.recovering import Recovering
+from app.home.patients.withdrawing import Withdrawing
 from app.home.repeatability.controller import Repeatability
 from app.home.repeatability.repeatability_page import RepeatabilityPage
 from app.home.settings.controller import SettingsController
@@ -77,6 +78,7 @@ class Home(QWidget):
         self.bar = ActionBar()
         self.toast = Toast(self)
         self.deleting = Deleting(controller, self)
+        self.withdrawing = Withdrawing(controller, self)
         self.computing = ComputingCourses(controller, self)
         self.filling = FillingDemonstration(controller, self)
         self.patients = PatientsAtHome(controller, self.page, self.filling.is_awaited, self)
@@ -263,6 +265,9 @@ class Home(QWidget):
         page.panel.next_requested.connect(self._take_next)
         page.patient_deleted.connect(self.deleting.patient)
         page.session_deleted.connect(self.deleting.session)
+        page.video_withdrawn.connect(self.withdrawing.ask)
+        self.withdrawing.done.connect(self.patients.read)
+        self.withdrawing.refused.connect(self.banner.show_message)
         self.rail.step_pressed.connect(self._on_rail_pressed)
         self.rail.below_pressed.connect(self._on_below_pressed)
         self.bar.pressed.connect(self._on_bar_pressed)

@@ -155,6 +155,7 @@ class PatientsAtHome(QObject):
             reading.next_step(now),
             reading.goals,
             is_simulated=reading.is_simulated,
+            has_video_consent=reading.has_video_consent,
         )
         self._show_change(reading)
 

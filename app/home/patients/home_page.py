@@ -50,6 +50,7 @@ class HomePage(QWidget):
     demonstration_requested = Signal()
     patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
+    video_withdrawn = Signal(object)  # the UUID of a patient whose consent is to be taken back
 
     def __init__(self) -> None:
         super().__init__()
@@ -135,9 +136,10 @@ class HomePage(QWidget):
         goals: Sequence[Goal] = (),
         *,
         is_simulated: bool = False,
+        has_video_consent: bool = False,
     ) -> None:
         """Show sessions, the course over those that are visits with a day, what is next, and what was agreed."""
-        self.panel.show_sessions(lines, is_simulated=is_simulated)
+        self.panel.show_sessions(lines, is_simulated=is_simulated, has_video_consent=has_video_consent)
         self.panel.show_course(visits, goals)
         self.panel.show_next(step)
 
@@ -213,6 +215,7 @@ class HomePage(QWidget):
         self.panel.course.visit_opened.connect(self.session_opened)
         self.panel.delete_patient.triggered.connect(self._on_delete_patient)
         self.panel.delete_session.triggered.connect(self._on_delete_session)
+        self.panel.withdraw_video.triggered.connect(self._on_withdraw_video)
         self.empty.demonstration.clicked.connect(self.demonstration_requested)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
@@ -273,6 +276,10 @@ class HomePage(QWidget):
         line = self.sessions.line
         if line is not None:
             self.session_deleted.emit(line.id)
+
+    def _on_withdraw_video(self) -> None:
+        if self.patient_id is not None:
+            self.video_withdrawn.emit(self.patient_id)
 
 
 class _Search(QLineEdit):

@@ -70,7 +70,9 @@ class PatientPanel(TallPage):
         self.delete_patient = QAction(tr("Delete patient"), self.menu)
         self.delete_session = QAction(tr("Delete session"), self.menu)
         self.analyse_again = QAction(tr("Analyse sessions again"), self.menu)
-        self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
+        self.withdraw_video = QAction(tr("Withdraw consent to video"), self.menu)
+        self.withdraw_video.setVisible(False)
+        self.menu.addActions([self.analyse_again, self.withdraw_video, self.delete_session, self.delete_patient])
         self.sentence = Text(size=22, weight=SEMIBOLD, wraps=True)
         self.second = Text(tone="ink2", wraps=True)
         self.go = Button("", ButtonKind.SECONDARY, Icon.EDIT, tr("W"), height=44)
@@ -114,8 +116,11 @@ class PatientPanel(TallPage):
         self.more.setVisible(bool(code))
         self.visits_card.setVisible(bool(code))
 
-    def show_sessions(self, lines: Sequence[SessionLine], *, is_simulated: bool = False) -> None:
+    def show_sessions(
+        self, lines: Sequence[SessionLine], *, is_simulated: bool = False, has_video_consent: bool = False
+    ) -> None:
         self._lines = tuple(lines)
+        self.withdraw_video.setVisible(has_video_consent)
         self.simulated.setVisible(is_simulated)
         self.sessions.setVisible(bool(lines))
         self.none_yet.setVisible(not lines)

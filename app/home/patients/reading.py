@@ -41,6 +41,7 @@ class PatientReading:
     courses: Mapping[UUID, Course]
     reported: frozenset[UUID]
     goals: tuple[Goal, ...] = ()
+    has_video_consent: bool = False
 
     def visits(self, now: datetime.datetime) -> tuple[CourseVisit, ...]:
         """Those with a day, in order of time; without those that are known to hold no walk."""
@@ -96,7 +97,8 @@ def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
     ids = [session.id for session in sessions]
     goals = library.patients.get(patient_id).details.goals
     reported, courses = library.audit.reported(ids), current_courses(library, ids)
-    return PatientReading(patient_id, sessions, undecided, courses, reported, goals)
+    has_consent = library.clips.consent(patient_id).is_given
+    return PatientReading(patient_id, sessions, undecided, courses, reported, goals, has_consent)
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:

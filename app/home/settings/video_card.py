@@ -16,7 +16,7 @@ class VideoCard(SettingsCard):
     def __init__(self) -> None:
         super().__init__(tr("Videos of walks"))
         hint = tr(
-            "Videos show faces, so they are kept for less time than measurements. Older videos are destroyed when "
+            "Videos show faces. They can be kept for less time than measurements. Older videos are destroyed when "
             "Gaitwright starts. The measurements stay."
         )
         lines = [("90", tr("90 days"), ""), ("365", tr("1 year"), ""), ("0", tr("As long as the session"), "")]
