@@ -17,10 +17,11 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Collection, Iterable
-from contextlib import closing
+from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass, replace
 from errno import EIO
 from pathlib import Path
+from uuid import UUID
 
 import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import select, update
@@ -95,9 +96,12 @@ def back_up(
         work = _Work(report, opened.folder / DATABASE, [opened.folder / name for name in _files(opened, folders)])
         work.refuse_too_little_room(into)
         _copy_database(opened.folder, beside, opened.data_key, work)
-        if not with_videos:
-            _leave_out_videos(beside, opened.data_key)
-        hashes = _copy_files(opened.folder, beside, _files(opened, folders), work)
+        names = _files(opened, folders)
+        videos = [name for name in names if name.startswith(f"{VIDEOS}/")]
+        hashes = _copy_files(opened.folder, beside, names, work, may_go=videos)
+        destroyed = [Path(name).name for name in videos if name not in hashes]  # meanwhile
+        if destroyed or not with_videos:
+            _leave_out_videos(beside, opened.data_key, destroyed if with_videos else None)
         checkpoint = _end_of_audit(beside, opened.data_key)
         size = work.database_bytes + work.bytes
         backup = Backup(folder, made_at, checkpoint, len(hashes) + 1, size, has_videos=with_videos)
@@ -213,23 +217,28 @@ def _files(opened: OpenedLibrary, folders: Iterable[str]) -> list[str]:
     ]
 
 
-def _leave_out_videos(folder: Path, data_key: KeyMaterial | None) -> None:
-    """State of each video in the copied database that this backup does not have it."""
+def _leave_out_videos(folder: Path, data_key: KeyMaterial | None, files: Collection[str] | None) -> None:
+    """State of videos in the copied database, those of `files` or all, that this backup does not have them."""
     with (
         closing(Database(sqlite_engine(folder / DATABASE, data_key, creates=False))) as database,
         database.writing() as session,
     ):
         left_out = update(ClipRow).where(ClipRow.state != ClipState.DISCARDED)
+        if files is not None:
+            left_out = left_out.where(ClipRow.id.in_([UUID(file.partition(".")[0]) for file in files]))
         session.execute(left_out.values(state=ClipState.NOT_IN_BACKUP, wrapped_key=None))
 
 
-def _copy_files(source: Path, target: Path, names: Collection[str], work: _Work) -> dict[str, str]:
-    """SHA-256 of each file that was copied."""
+def _copy_files(
+    source: Path, target: Path, names: Collection[str], work: _Work, may_go: Collection[str] = ()
+) -> dict[str, str]:
+    """SHA-256 of each file that was copied; those of `may_go` may be destroyed before their turn comes."""
     hashes, folders = {}, {target / RECORDINGS, *((target / name).parent for name in names)} - {target}
     for folder in folders:
         folder.mkdir(mode=0o700)
     for name in names:
-        hashes[name] = _copy(source / name, target / name, work)
+        with suppress(FileNotFoundError) if name in may_go else nullcontext():
+            hashes[name] = _copy(source / name, target / name, work)
     for folder in folders:
         sync_folder(folder)
     return hashes

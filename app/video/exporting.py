@@ -1,5 +1,6 @@
 """Write a clip as a file that any player shows: WebM, with the faces in it or with the upper third blurred."""
 
+from errno import EIO
 from fractions import Fraction
 from pathlib import Path
 
@@ -26,14 +27,17 @@ def write_video(clip: Clip, path: Path, *, is_blurred: bool, report: Report) -> 
         stream = container.add_stream("libvpx-vp9", rate=max(1, round(clip.rate_hz)))
         stream.width, stream.height, stream.pix_fmt = clip.width // 2 * 2, clip.height // 2 * 2, "yuv420p"
         stream.bit_rate = round(BITS_A_PIXEL * clip.width * clip.height * clip.rate_hz)
+        stream.codec_context.time_base = MILLISECOND  # else times are rounded to whole frames
         stream.options = {"deadline": "realtime", "cpu-used": "6", "row-mt": "1"}
         begin_s, last_ms = float(clip.time_s[0]), -1
         for number in range(len(clip.pictures)):
             report(number / len(clip.pictures), "")
             try:
                 image = QImage.fromData(clip.pictures.jpeg(number))
-            except OSError:
-                continue
+            except OSError as error:
+                if error.errno == EIO:  # this picture alone
+                    continue
+                raise
             time_ms = round((float(clip.time_s[number]) - begin_s) * 1000)
             if image.isNull() or time_ms <= last_ms:
                 continue
@@ -43,6 +47,8 @@ def write_video(clip: Clip, path: Path, *, is_blurred: bool, report: Report) -> 
             frame = av.VideoFrame.from_ndarray(_rgb(whole), "rgb24")
             frame.pts, frame.time_base, last_ms = time_ms, MILLISECOND, time_ms
             container.mux(stream.encode(frame))
+        if last_ms < 0:
+            raise OSError(EIO, "no picture of this video can be read")
         container.mux(stream.encode(None))
 
 

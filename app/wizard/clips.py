@@ -16,6 +16,7 @@ from app.wizard.recordings import SessionRecordings
 from app.workers.background import Background
 from app.workers.library_controller import LibraryController
 from app.workers.refusals import refusal_of
+from core.video.clip import SyncBy
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
@@ -94,6 +95,7 @@ class VisitClips(QObject):
             withdraw_consent(opened, patient_id)
             return opened.library.clips.consent(patient_id)
 
+        self._unsynchronised.clear()
         self._drop()
         self._run(withdraw, self._on_consent)
         self.read()
@@ -108,6 +110,7 @@ class VisitClips(QObject):
         def delete(opened: "OpenedLibrary") -> None:
             destroy_clip(opened, clip_id)
 
+        self._unsynchronised = [one for one in self._unsynchronised if one.id != clip_id]
         self._drop()
         self._run(delete, None)
         self.read()
@@ -116,10 +119,6 @@ class VisitClips(QObject):
         """Take what somebody found of a clip's times."""
         if (clip := self.find(clip_id)) is not None:
             self._run(lambda opened: opened.library.clips.synchronise(clip, sync), self._on_changed)
-
-    def note_export(self, clip_id: UUID, *, is_blurred: bool) -> None:
-        """Note in the library's audit that a clip leaves it, and how."""
-        self._run(lambda opened: opened.library.clips.note_export(clip_id, is_blurred=is_blurred), None)
 
     def read(self) -> None:
         """Read which videos the visit has, and whether the patient agreed."""
@@ -144,8 +143,8 @@ class VisitClips(QObject):
 
         def open_all(
             opened: "OpenedLibrary", _report: Report
-        ) -> "tuple[tuple[Clip, ...], tuple[ClipRefusedError, ...]]":
-            return open_clips(opened, session.id)
+        ) -> "tuple[frozenset[UUID], tuple[Clip, ...], tuple[ClipRefusedError, ...]]":
+            return required, *open_clips(opened, session.id)
 
         self._run_beside(open_all, self._on_opened)
 
@@ -179,8 +178,11 @@ class VisitClips(QObject):
             self._read_of = session.id
             self.read()
 
-    def _on_opened(self, found: "tuple[tuple[Clip, ...], tuple[ClipRefusedError, ...]]") -> None:
-        self._clips, refused = found
+    def _on_opened(self, found: "tuple[frozenset[UUID], tuple[Clip, ...], tuple[ClipRefusedError, ...]]") -> None:
+        required, clips, refused = found
+        if required is not self._tried:
+            return  # they were let go meanwhile
+        self._clips = clips
         self.opened.emit(self._clips)
         self._synchronise_next()
         for refusal in refused:
@@ -234,7 +236,9 @@ class VisitClips(QObject):
 
     def _on_synchronised(self, found: "tuple[StoredClip, Sync | None]") -> None:
         clip, sync = found
-        if sync is not None:
+        now = self.find(clip.id)
+        is_by_hand = now is not None and now.sync is not None and now.sync.by is SyncBy.HAND  # meanwhile
+        if sync is not None and not is_by_hand:
             self.synchronise(clip.id, sync)
         self._go_on()
 

@@ -52,7 +52,9 @@ def tidy(library: OpenedLibrary) -> None:
     destroyed = destroy_overdue(library)
     folder = library.library.settings.get(BACKUP_FOLDER, "")
     removed = remove_old_backups(Path(folder)) if folder and Path(folder).is_dir() else ()
-    finish_destroying(library)
-    recover_clips(library)
-    videos = destroy_overdue_clips(library)
-    _log.info("sessions destroyed: %d, videos: %d, old backups removed: %d", destroyed, videos, len(removed))
+    _log.info("sessions destroyed: %d, old backups removed: %d", destroyed, len(removed))
+    for step in (finish_destroying, recover_clips, destroy_overdue_clips):
+        try:
+            step(library)
+        except OSError as error:  # another program holds a file: the videos of others are not kept by it
+            _log.warning("%s is tried again at the next start", step.__name__, exc_info=error)

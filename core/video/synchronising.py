@@ -6,7 +6,7 @@ the walk state the same.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,17 +67,27 @@ def picture_motion(grey: Grey, time_s: FloatArray) -> FloatArray:
         Mean change of brightness since the frame before, grey values per frame; NaN for the first. What the whole room
         does is taken out: light that changes, a camera that is moved a little, and noise.
     """
-    motion = np.full(len(grey), np.nan)
-    if len(grey) < 2:
-        return motion
+    return motion_per_frame(picture_changes(grey), time_s)
+
+
+def picture_changes(grey: Iterable[Grey]) -> FloatArray:
+    """As `picture_motion`, of pictures that come one by one (two are held), and not yet for each frame."""
+    changes = list[float]()
+    before: FloatArray | None = None
+    for picture in grey:
+        now = _lower_half(picture)
+        changes.append(math.nan if before is None else _change(before, now))
+        before = now
+    return np.array(changes)
+
+
+def motion_per_frame(changes: FloatArray, time_s: FloatArray) -> FloatArray:
+    """Share out what changed, (n,), over frames that are missing, by the pictures' times, (n,) in s."""
+    if len(changes) < 2:
+        return changes
     step_s = np.diff(time_s)
     frames = np.maximum(1.0, np.round(step_s / np.median(step_s)))
-    before = _lower_half(grey[0])
-    for number in range(1, len(grey)):
-        now = _lower_half(grey[number])
-        motion[number] = _change(before, now) / frames[number - 1]
-        before = now
-    return motion
+    return np.concatenate([changes[:1], changes[1:] / frames])
 
 
 def _lower_half(picture: Grey) -> FloatArray:

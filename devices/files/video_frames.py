@@ -96,6 +96,7 @@ class _VideoReading:
         begins = stream.start_time
         self._begins_s = 0.0 if begins is None or stream.time_base is None else float(begins * stream.time_base)
         self._is_damaged = False
+        self._states_length = stream.duration is not None  # of its pictures; else the longest track's is known alone
         self._encoder: JpegEncoder | None = None
 
     def piece(self, from_s: float, most_frames: int) -> VideoPiece:
@@ -113,7 +114,7 @@ class _VideoReading:
             times.append(time_s)
             jpegs.append(self._encoded(frame))
         last_s = times[-1] if times else from_s
-        is_cut = is_end and last_s < self._length_s - ENDS_EARLY_S
+        is_cut = is_end and self._states_length and last_s < self._length_s - ENDS_EARLY_S
         if not times and from_s <= 0.0:
             raise _no_video(self._where)
         size = (self._encoder.width, self._encoder.height) if self._encoder is not None else (2, 2)

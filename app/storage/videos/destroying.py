@@ -4,7 +4,7 @@ First the row is discarded, which takes the video out of sight and forgets its k
 overwritten and the file removed; then the row goes. Killed anywhere in between, the next start goes on.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from uuid import UUID
 
 from app.storage.journal.destroying import destroy_file
@@ -28,6 +28,12 @@ def destroy_clips_of(opened: OpenedLibrary, recording_id: UUID) -> None:
 def withdraw_consent(opened: OpenedLibrary, patient_id: UUID) -> int:
     """Note that a patient agrees no longer and destroy the patient's videos; how many; raises as `destroy_clip`."""
     return _finish_all(opened, opened.library.clips.withdraw_consent(patient_id))
+
+
+def destroy_all(opened: OpenedLibrary, clip_ids: Iterable[UUID]) -> int:
+    """Destroy many at once; how many; raises as `destroy_clip`, after all were tried."""
+    clips = opened.library.clips
+    return _finish_all(opened, [one for clip_id in clip_ids if (one := clips.delete(clip_id)) is not None])
 
 
 def finish_destroying(opened: OpenedLibrary) -> int:

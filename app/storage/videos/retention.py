@@ -10,7 +10,7 @@ from collections.abc import Callable
 from app.storage.library import now_utc
 from app.storage.opened import OpenedLibrary
 from app.storage.retention import overdue_before
-from app.storage.videos.destroying import destroy_clip
+from app.storage.videos.destroying import destroy_all
 
 VIDEO_DAYS = "video_days"  # the setting
 USUAL_DAYS = 365
@@ -27,6 +27,4 @@ def destroy_overdue_clips(opened: OpenedLibrary, now: Callable[[], datetime.date
     days = video_days(opened)
     before = overdue_before(opened, now(), datetime.timedelta(days)) if days else None
     clips = opened.library.clips.made_before(before) if before is not None else ()
-    for clip in clips:
-        destroy_clip(opened, clip.id)
-    return len(clips)
+    return destroy_all(opened, [clip.id for clip in clips])

@@ -288,6 +288,7 @@ class ReportStep(Step):
             return
         if self._has_results():
             self._frame.setCurrentWidget(self._frame.report)
+            self._offer_video()  # the results may have come after the videos
             self._draw()
         else:
             self._frame.sentence.show_sentence(tr("There are no results yet."), tr("Record a walk first."))
@@ -334,13 +335,17 @@ class ReportStep(Step):
 
     def _on_clips_opened(self, clips: "tuple[Clip, ...]") -> None:
         self._clips = clips
+        self._offer_video()
+
+    def _offer_video(self) -> None:
+        """Offer pictures of the video once both the results and the videos are there."""
         if self._frame is None:
             return
         evaluation = self._visit.evaluation
         walks: Sequence[str] = ()
         if evaluation.session is not None and evaluation.analysis is not None:
             walks = default_walks(AnalysedVisit(evaluation.session, evaluation.analysis))
-        is_offered = any(clip.recording in walks[-1:] and clip.is_synchronised for clip in clips)
+        is_offered = any(clip.recording in walks[-1:] and clip.is_synchronised for clip in self._clips)
         self._frame.report.offer_video(is_offered=is_offered)
 
     def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Signal, SignalInstance
+from PySide6.QtCore import QObject, Signal, SignalInstance, Slot
 from PySide6.QtWidgets import QWidget
 
 from app.importing.untrusted_files import read_foreign_video
+from app.storage.stored import ClipRefusedError
 from app.storage.videos.destroying import destroy_clip
 from app.storage.videos.reader import recording_opened_ns
 from app.storage.videos.writer import ClipWriter
@@ -22,6 +23,7 @@ from app.widgets.folder_dialog import ask_for_files, ask_for_new_file
 from app.widgets.question_dialog import QuestionDialog
 from app.wording.numbers import clock
 from app.wording.translation import tr
+from app.workers.background import Work
 from app.workers.refusals import refusal_of
 from devices.cameras.camera import CameraMode, CapturedFrame
 
@@ -36,6 +38,7 @@ FACES, BLURRED, NONE, DELETE, AGREES = "faces", "blurred", "none", "delete", "ag
 PROPOSED = "video.webm"
 PIECE = 60  # frames that are read at a time
 USUAL_RATE_HZ = 30.0  # of a video that states none
+LEAST_STEP_S = 0.0005  # between two frames: no video that is read has more than 1000 a second
 
 
 class VideoActions(QObject):
@@ -48,6 +51,9 @@ class VideoActions(QObject):
         self._visit, self._clips = visit, visit.clips
         self._clips.exporting.done.connect(self._on_exported)
         self._clips.exporting.failed.connect(self._on_not_exported)
+        self._is_importing = False
+        self._export: Work | None = None  # which begins once it is noted
+        visit.controller.locking.connect(self._on_locking)
 
     def actions(self, clip: "Clip | None", walk: "SessionRecording | None", window: QWidget) -> tuple[BarAction, ...]:
         """Give those of the clip in sight, or the import where the walk has none."""
@@ -110,6 +116,7 @@ class VideoActions(QObject):
     def _import(self, walk: "SessionRecording", files: list[str]) -> None:
         path, walk_id = Path(files[0]), walk.id
         self.reported.emit(tr("The video is being imported."), tr("This takes about as long as the video."))
+        self._is_importing = True
         self._visit.controller.run_long(
             lambda opened, report: import_video(opened, walk_id, path, report),
             self._on_imported,
@@ -119,6 +126,7 @@ class VideoActions(QObject):
         )
 
     def _on_imported(self, imported: "tuple[StoredClip | None, bool]") -> None:
+        self._is_importing = False
         clip, is_damaged = imported
         if is_damaged and clip is not None:
             what = tr("The video is damaged after {length}.").format(length=clock(clip.length_s))
@@ -128,15 +136,42 @@ class VideoActions(QObject):
         self._clips.take(clip)
 
     def _on_not_imported(self, what: str, remedy: str) -> None:
+        self._is_importing = False
         self.reported.emit(what, remedy)
 
     def _ask_where(self, clip: "Clip", window: QWidget, *, is_blurred: bool) -> None:
-        ask_for_new_file(window, tr("Export video"), PROPOSED, lambda path: self._export(clip, Path(path), is_blurred))
+        ask_for_new_file(window, tr("Export video"), PROPOSED, lambda path: self._note(clip, Path(path), is_blurred))
 
-    def _export(self, clip: "Clip", path: Path, is_blurred: bool) -> None:
-        self.reported.emit(tr("The video is being exported."), "")
-        self._clips.note_export(clip.id, is_blurred=is_blurred)
-        self._clips.exporting.start(lambda report: write_video(clip, path, is_blurred=is_blurred, report=report))
+    def _note(self, clip: "Clip", path: Path, is_blurred: bool) -> None:
+        """Note it in the library's audit first: what the library refuses does not leave it."""
+
+        def note(opened: "OpenedLibrary") -> None:
+            opened.library.clips.note_export(clip.id, is_blurred=is_blurred)
+
+        self._export = lambda report: write_video(clip, path, is_blurred=is_blurred, report=report)
+        self._visit.controller.run(note, self._on_noted, self._on_not_noted, self)
+
+    def _on_noted(self, _nothing: None) -> None:
+        export, self._export = self._export, None
+        if export is not None:
+            self.reported.emit(tr("The video is being exported."), "")
+            self._clips.exporting.start(export)
+
+    def _on_not_noted(self, what: str, remedy: str) -> None:
+        self._export = None
+        self.reported.emit(what, remedy)
+
+    @Slot()
+    def _on_locking(self) -> None:
+        """Nothing of a video is read or written under the lock."""
+        if self._is_importing:
+            self._is_importing = False
+            self._visit.controller.stop_long()
+            self.reported.emit(tr("The lock ended the import of the video."), tr("Import it again."))
+        if self._export is not None or self._clips.exporting.is_busy:
+            self._export = None
+            self._clips.exporting.stop()
+            self.reported.emit(tr("The lock ended the export of the video."), tr("Export it again."))
 
     def _on_exported(self, _nothing: object) -> None:
         self.reported.emit(tr("The video is exported."), tr("The file is not encrypted."))
@@ -166,11 +201,15 @@ def import_video(
                 mode = CameraMode(piece.width, piece.height, piece.rate_hz if piece.rate_hz > 0 else USUAL_RATE_HZ)
                 writer = ClipWriter.create(opened, walk_id, opened_ns, 1, "", mode, is_imported=True)
             for time_s, jpeg in zip(piece.time_s, piece.jpegs, strict=True):
-                writer.add(CapturedFrame(count, opened_ns + round(time_s * 1e9), None, jpeg), waits=True)
+                frame = CapturedFrame(count, opened_ns + round(time_s * 1e9), None, jpeg)
+                if not writer.add(frame, waits=True) and writer.has_ended:
+                    raise ClipRefusedError(
+                        "There is not enough disk space for a video", "Delete or move files, then try again"
+                    )
                 count += 1
             if piece.is_end or not piece.jpegs:
                 return writer.stop(), piece.is_damaged
-            from_s = float(piece.time_s[-1]) + 0.5 / mode.rate_hz
+            from_s = float(piece.time_s[-1]) + LEAST_STEP_S
             share = min(1.0, from_s / piece.length_s) if piece.length_s > 0 else 0.0
     except BaseException:
         if writer is not None and (stored := writer.stop()) is not None:

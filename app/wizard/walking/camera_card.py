@@ -30,13 +30,15 @@ class CameraShown:
     """What the card shows.
 
     `cameras`: names of what can be chosen, one or both of two; `chosen` is one of them, `views` from where each looks.
-    `needs_consent`: the patient has not agreed yet, so no camera runs. `facts`: what is written now, or how it is sent.
+    `lost`: numbers, from 1, of those that ended while they were on. `needs_consent`: the patient has not agreed yet, so
+    no camera runs. `facts`: what is written now, or how it is sent.
     """
 
     cameras: tuple[str, ...]
     chosen: int
     views: tuple[str, ...]
     mode: tuple[int, int, int]
+    lost: frozenset[int] = frozenset()
     is_on: bool = False
     is_recording: bool = False
     needs_consent: bool = False
@@ -88,8 +90,9 @@ class CameraCard(Card):
         self.switch.setAccessibleName(tr("Camera"))
         has_two = len(shown.views) > 1
         for number, picture in enumerate(self.pictures):
-            picture.setVisible(shown.is_on and not shown.needs_consent and number < len(shown.views))
-            if not shown.is_on:
+            is_live = shown.is_on and number + 1 not in shown.lost
+            picture.setVisible(is_live and not shown.needs_consent and number < len(shown.views))
+            if not is_live:
                 picture.clear()
         self.facts.setText(shown.facts or tr("Camera is off."))
         self.facts.setVisible(bool(shown.facts) or not shown.is_on)

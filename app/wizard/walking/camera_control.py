@@ -12,7 +12,7 @@ from app.system.progress import Report
 from app.widgets.question_dialog import QuestionDialog
 from app.wizard.walking.camera_card import MODES, VIEWS, CameraShown
 from app.wizard.walking.camera_feed import CameraFeed
-from app.wording.cameras import camera_gone_words
+from app.wording.cameras import camera_gone_words, withdrawal_words
 from app.wording.numbers import clock
 from app.wording.translation import tr
 from devices.cameras.camera import STAND_INS, CameraInfo, CameraLostError, CameraMode
@@ -44,6 +44,7 @@ class CameraControl(QObject):
         self._message: tuple[str, str] = "", ""
         self._began_s = 0.0
         self.feeds: tuple[CameraFeed, ...] = ()
+        self._waiting: dict[CameraFeed, tuple[UUID, int]] = {}  # for the walk: its id, and when it was opened, ns
         self._ticks = 0
         self.dialog: QuestionDialog | None = None
         visit.controller.locking.connect(self._on_locking)
@@ -69,6 +70,7 @@ class CameraControl(QObject):
             cameras=(*names, *both),
             chosen=self._chosen,
             views=tuple(self._views[: len(self._required)]),
+            lost=frozenset(feed.number for feed in self.feeds if feed.is_over),
             mode=self._mode,
             is_on=self._is_on,
             is_recording=self.is_recording,
@@ -106,12 +108,8 @@ class CameraControl(QObject):
 
     def withdraw(self, window: QWidget) -> None:
         """Ask once more, then take the consent back, and with it every video of the patient."""
-        sentences = (
-            tr("All videos of this patient are destroyed at once. The measurements stay."),
-            tr("Backups with videos keep them for up to 90 days."),
-        )
-        answers = ((WITHDRAW, tr("Withdraw consent")),)
-        self.dialog = QuestionDialog(tr("Withdraw the consent to video?"), sentences, answers, window)
+        question, follows, answer = withdrawal_words()
+        self.dialog = QuestionDialog(question, follows, ((WITHDRAW, answer),), window)
         self.dialog.answered.connect(lambda _answer: self._clips.withdraw_consent())
         self._visit.controller.locking.connect(self.dialog.reject)
         self.dialog.open()
@@ -141,15 +139,21 @@ class CameraControl(QObject):
             self._message = tr("This walk has no video."), tr("The library does not answer. The walk is recorded.")
             self.changed.emit()
             return
-        recording_id, opened_ns = latest.id, latest.opened_ns
         self._began_s = self._now_s()
-        for number, feed in enumerate(self.feeds, 1):
-            view, mode = feed.view, feed.mode
-            start = self._start_of(recording_id, opened_ns, number, view, mode)
+        self._waiting = {feed: (latest.id, latest.opened_ns) for feed in self.feeds if not feed.is_over}
+        self._begin_clips()
+
+    @Slot()
+    def _begin_clips(self) -> None:
+        """Begin the clip of each camera once it is known what it gives: a walk waits for none."""
+        for feed in [one for one in self._waiting if one.is_known]:
+            recording_id, opened_ns = self._waiting.pop(feed)
+            start = self._start_of(recording_id, opened_ns, feed.number, feed.view, feed.mode)
             self._visit.controller.run(start, self._on_writing, self._on_not_written, self)
 
     def walk_ended(self) -> None:
         """End the clips with the walk."""
+        self._waiting.clear()
         for feed in self.feeds:
             if (writer := feed.end_clip()) is not None:
                 self._clips.close(writer)
@@ -175,9 +179,10 @@ class CameraControl(QObject):
             width, height, rate = self._mode
             mode = CameraMode(width, height, rate)
             pairs = zip(self._required, self._views, strict=False)
-            self.feeds = tuple(CameraFeed(info, mode, view, self) for info, view in pairs)
+            self.feeds = tuple(CameraFeed(k, info, mode, view, self) for k, (info, view) in enumerate(pairs, 1))
             for feed in self.feeds:
                 feed.ended.connect(self._on_ended)
+                feed.changed.connect(self._begin_clips)
                 feed.changed.connect(self.changed)
         elif not must_run:
             self._close()
@@ -195,9 +200,10 @@ class CameraControl(QObject):
         """How the cameras send, and how long the clip is; empty while they are off."""
         if not self.feeds:
             return ""
-        mode = min((feed.mode for feed in self.feeds), key=lambda one: one.rate_hz * one.width)
+        live = [feed for feed in self.feeds if not feed.is_over]
+        mode = min((feed.mode for feed in live), key=lambda one: one.rate_hz * one.width)
         stated = [tr("{rate:.0f} frames/s").format(rate=mode.rate_hz)]
-        if any(feed.is_reduced for feed in self.feeds):
+        if any(feed.is_reduced for feed in live):
             stated.append(tr("reduced: this computer is too slow for more"))
         if self.is_recording:
             stated.insert(0, clock(self._now_s() - self._began_s))
@@ -218,8 +224,9 @@ class CameraControl(QObject):
     @Slot(object)
     def _on_writing(self, begun: "tuple[int, ClipWriter]") -> None:
         number, writer = begun
-        if number <= len(self.feeds) and self._visit.recordings.has_begun:
-            self.feeds[number - 1].record(writer)
+        feed = next((one for one in self.feeds if one.number == number and not one.is_over), None)
+        if feed is not None and self._visit.recordings.has_begun:
+            feed.record(writer)
         else:
             self._clips.close(writer)  # the walk, or the camera, ended before it began
         self.changed.emit()
@@ -231,9 +238,18 @@ class CameraControl(QObject):
 
     @Slot(object)
     def _on_ended(self, error: CameraLostError) -> None:
-        self._message = camera_gone_words(error, is_recording=self._visit.recordings.is_recording)
-        self._is_on = False
-        self._close()
+        lost = self.sender()
+        others = [feed for feed in self.feeds if feed is not lost and not feed.is_over]
+        is_recording = self._visit.recordings.is_recording and not others
+        self._message = camera_gone_words(error, is_recording=is_recording)
+        if isinstance(lost, CameraFeed) and others:  # which go on
+            self._waiting.pop(lost, None)
+            if (writer := lost.end_clip()) is not None:
+                self._clips.close(writer)
+            lost.stop()
+        else:
+            self._is_on = False
+            self._close()
         self.changed.emit()
 
     @Slot()

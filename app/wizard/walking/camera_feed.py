@@ -18,9 +18,9 @@ class CameraFeed(QObject):
     ended = Signal(object)  # CameraLostError
     changed = Signal()  # the mode in force
 
-    def __init__(self, info: CameraInfo, mode: CameraMode, view: str, parent: QObject) -> None:
+    def __init__(self, number: int, info: CameraInfo, mode: CameraMode, view: str, parent: QObject) -> None:
         super().__init__(parent)
-        self.info, self.view = info, view
+        self.number, self.info, self.view = number, info, view
         self.latest: CapturedFrame | None = None
         self.writer: ClipWriter | None = None
         self.taken = 0  # frames of the clip
@@ -32,6 +32,15 @@ class CameraFeed(QObject):
     def mode(self) -> CameraMode:
         """In force, which may be less than was asked for."""
         return self._capture.mode
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the camera has stated what it gives, as it does just before its first frame."""
+        return self._given is not None
+
+    @property
+    def is_over(self) -> bool:
+        return self._is_over
 
     @property
     def is_reduced(self) -> bool:

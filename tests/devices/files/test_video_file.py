@@ -100,6 +100,14 @@ def test_a_video_that_breaks_off_gives_what_is_whole(reading: LimitedReading, tm
     assert (len(whole.jpegs), whole.is_end, whole.is_damaged) == (120, True, False)
 
 
+@pytest.mark.parametrize("name", ["a.mkv", "b.mp4"])
+def test_sound_that_goes_on_after_the_pictures_damages_nothing(
+    reading: LimitedReading, tmp_path: Path, name: str
+) -> None:
+    piece = reading.read_video(write_video(tmp_path / name, 45, sound_s=4.5), 0.0)
+    assert (len(piece.jpegs), piece.is_end, piece.is_damaged) == (45, True, False)
+
+
 def encrypted(content: bytes) -> bytes:
     assert content.count(b"avc1") >= 1
     assert content.count(b"btrt") == 1

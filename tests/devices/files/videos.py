@@ -1,15 +1,20 @@
 """Videos as phones and cameras write them, made by FFmpeg: each frame's brightness states its number."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
 import av
 import numpy as np
+from av.audio.stream import AudioStream
 from av.codec.context import CodecContext
+from av.container import OutputContainer
 from av.video.codeccontext import VideoCodecContext
 from av.video.stream import VideoStream
 from numpy.typing import NDArray
 
+MILLISECOND = Fraction(1, 1000)
+SOUND_HZ = 48_000
 FASTSTART = {"movflags": "faststart"}  # the description comes before the pictures
 
 
@@ -24,8 +29,10 @@ def write_video(
     size: tuple[int, int] = (320, 180),
     options: dict[str, str] | None = None,
     rate: Fraction | int = 30,
+    times_ms: Sequence[int] | None = None,
+    sound_s: float = 0.0,
 ) -> Path:
-    """A video with a white corner at the top left."""
+    """A video with a white corner at the top left; at its rate, unless `times_ms` states when each frame was taken."""
     width, height = size
     with av.open(str(path), "w", options=options or {}) as container:
         stream = container.add_stream(codec, rate=rate)
@@ -33,12 +40,29 @@ def write_video(
         stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
         stream.codec_context.gop_size = 15
         stream.codec_context.bit_rate = 4_000_000
+        if times_ms is not None:
+            stream.codec_context.time_base = MILLISECOND
+        if sound_s:
+            _write_silence(container, sound_s)
         for number in range(frames):
             picture = np.full((height, width, 3), level(number), np.uint8)
             picture[: height // 4, : width // 4] = 255
-            container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+            frame = av.VideoFrame.from_ndarray(picture, format="rgb24")
+            if times_ms is not None:
+                frame.pts, frame.time_base = times_ms[number], MILLISECOND
+            container.mux(stream.encode(frame))
         container.mux(stream.encode(None))
     return path
+
+
+def _write_silence(container: OutputContainer, seconds: float) -> None:
+    stream = container.add_stream("aac", rate=SOUND_HZ)
+    assert isinstance(stream, AudioStream)
+    for begin in range(0, round(seconds * SOUND_HZ), 1024):
+        frame = av.AudioFrame.from_ndarray(np.zeros((1, 1024), np.float32), format="fltp", layout="mono")
+        frame.sample_rate, frame.pts, frame.time_base = SOUND_HZ, begin, Fraction(1, SOUND_HZ)
+        container.mux(stream.encode(frame))
+    container.mux(stream.encode(None))
 
 
 def rotated(content: bytes, quarter_turns: int) -> bytes:

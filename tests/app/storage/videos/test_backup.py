@@ -9,6 +9,7 @@ import pytest
 from app.storage.backup import back_up, find_backups, restore
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import ClipRefusedError, ClipState, StoredClip
+from app.storage.videos.destroying import destroy_clip
 from app.storage.videos.reader import open_clip
 from app.storage.videos.recovery import recover_clips
 from tests.quick_library import PASSPHRASE
@@ -73,3 +74,17 @@ def test_what_the_library_lacks_of_its_videos_is_reported(
     )
     for backup in find_backups(backups):
         assert backup.has_videos
+
+
+def test_a_video_destroyed_amid_a_backup_is_left_out_and_ends_nothing(
+    opened: OpenedLibrary, recording_id: UUID, make_video: MakeVideo, backups: Path
+) -> None:
+    first, second = sorted((make_video(recording_id), make_video(recording_id, camera=2)), key=lambda one: one.file)
+
+    def report(_share: float, _what: str) -> None:
+        if list(backups.rglob(first.file)):
+            destroy_clip(opened, second.id)
+
+    backup = back_up(opened, backups, report, with_videos=True)
+    assert (backup.faults, backup.files) == ((), 4)
+    assert not [path for path in backup.folder.rglob("*") if str(second.id) in path.name]

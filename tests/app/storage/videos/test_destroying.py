@@ -12,11 +12,13 @@ from app.storage.journal.header import IDENTITY, NO_KEY, WRAPPED_BYTES, JournalH
 from app.storage.opened import OpenedLibrary
 from app.storage.retention import destroy_overdue, destroy_recording
 from app.storage.stored import ClipRefusedError, ClipState, StoredClip
+from app.storage.videos import destroying
 from app.storage.videos.destroying import destroy_clip, finish_destroying, withdraw_consent
 from app.storage.videos.reader import open_clip, read_clip
 from app.storage.videos.recovery import recover_clips
 from app.storage.videos.retention import VIDEO_DAYS, destroy_overdue_clips
 from app.storage.videos.writer import ClipWriter
+from app.workers.library_opening import tidy
 from tests.app.storage.later import Later, go_on, later, timed
 from tests.videos import MODE, NO_ROOM_ASKED, OPENED_NS, frame, walk
 
@@ -242,3 +244,26 @@ def test_a_file_that_another_program_holds_keeps_no_other_video(
     assert opened.library.clips.of_session(session_id) == {}
     assert finish_destroying(opened) == 1
     assert list(opened.videos.iterdir()) == []
+
+
+def test_a_video_whose_file_another_program_holds_keeps_no_other_one(
+    timed: OpenedLibrary, recording_id: UUID, make_video: MakeVideo, later: Later, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    held = min((make_video(recording_id), make_video(recording_id, camera=2)), key=lambda one: one.file)
+    destroy = destroying.destroy_file
+
+    def refused(path: Path) -> None:
+        if path.name == held.file:
+            raise PermissionError(13, "held", str(path))
+        destroy(path)
+
+    monkeypatch.setattr(destroying, "destroy_file", refused)
+    go_on(timed, later, 366)
+    with pytest.raises(PermissionError):
+        destroy_overdue_clips(timed, later)
+    assert [path.name for path in timed.videos.iterdir()] == [held.file]
+    tidy(timed)  # as at every start: it goes on all the same
+    monkeypatch.undo()
+    tidy(timed)
+    assert list(timed.videos.iterdir()) == []
+    assert timed.library.clips.known() == frozenset()

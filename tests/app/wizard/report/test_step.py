@@ -526,3 +526,18 @@ def test_pictures_of_the_video_are_in_the_report_only_where_somebody_chose_them(
     request = step.request()
     assert request is not None
     assert request.key_frames == ()
+
+
+def test_pictures_are_offered_also_where_the_results_come_after_the_video(
+    step: ReportStep, visit: Visit, analysis: Analysis
+) -> None:
+    report, evaluation, request = step.page.report, visit.evaluation, step.request()
+    assert request is not None
+    walk = next(one for one in analysis.recordings if one.name == request.walks[-1])
+    session = evaluation.session
+    evaluation.session = evaluation.analysis = None
+    visit.clips.opened.emit((drawn_clip(walk, size=(320, 180)),))
+    assert not report.video.isVisible()
+    evaluation.session, evaluation.analysis = session, analysis
+    evaluation.done.emit()
+    assert report.video.isVisible()

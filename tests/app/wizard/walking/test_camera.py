@@ -227,3 +227,44 @@ def test_a_walk_that_the_library_does_not_know_yet_has_no_video(
     (stored,) = clips_of(qtbot, visit)
     assert stored.recording_id == visit.recordings.walks[-1].id
     assert "no video" not in step.page.camera.notice.text
+
+
+@pytest.mark.parametrize("cameras", [[CameraInfo("Square", "testsrc=size=320x240:rate=15", TEST_PICTURE)]])
+def test_a_walk_begun_before_the_first_picture_states_what_the_camera_gives(
+    qtbot: QtBot, step: WalkingStep, visit: Visit
+) -> None:
+    qtbot.waitUntil(step.page.camera.isVisible)
+    step.page.camera.switch.click()
+    step.page.camera.agree.click()
+    qtbot.waitUntil(lambda: bool(step.camera.feeds))
+    walk(qtbot, step, visit, frames=8)
+    (stored,) = clips_of(qtbot, visit)
+    assert (stored.width, stored.height) == (320, 240)
+    assert stored.rate_hz <= 15.0
+
+
+@pytest.mark.parametrize("cameras", [[CAMERA, OTHER]])
+def test_of_two_cameras_one_that_is_lost_costs_its_own_video_only(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
+    qtbot.waitUntil(step.page.camera.isVisible)
+    step.camera.choose_camera(2)
+    switch_on(qtbot, step, visit)
+    with qtbot.waitSignal(visit.recordings.begun):
+        step.on_intent(RUN)
+    first, second = step.camera.feeds
+    qtbot.waitUntil(lambda: first.taken >= 3 and second.taken >= 3)
+    first.kill()
+    card = step.page.camera
+    qtbot.waitUntil(lambda: card.pictures[0].isHidden())
+    assert card.pictures[1].isVisible()
+    assert card.notice.text
+    assert "without video" not in card.notice.text
+    before = second.taken
+    qtbot.waitUntil(lambda: second.taken >= before + 5)
+    with qtbot.waitSignal(visit.recordings.ended):
+        step.on_intent(RUN)
+    lost, whole = clips_of(qtbot, visit, 2)
+    assert (lost.camera, whole.camera) == (1, 2)
+    assert whole.frames >= before + 5
