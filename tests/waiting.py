@@ -7,7 +7,7 @@ from typing import Any
 
 from pytestqt.qtbot import QtBot
 
-PATIENCE_S = 60.0  # on a busy machine
+PATIENCE_S = 120.0  # on a busy machine
 PATIENCE_MS = int(1000 * PATIENCE_S)
 QTBOTS = ("waitUntil", "waitSignal", "waitSignals", "waitExposed", "waitActive", "waitCallback")
 

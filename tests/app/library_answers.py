@@ -13,7 +13,6 @@ from app.workers.library_controller import LibraryController
 from app.workers.library_holder import LibraryHolder
 from app.workers.library_state import NotOpened, OpenedState
 
-WAIT_MS = 20_000  # on a busy machine
 Done = Callable[[object], object]
 Opening = Callable[[LibraryHolder], OpenedState | NotOpened]
 
@@ -60,7 +59,7 @@ def opened(qtbot: QtBot, controller: LibraryController, folder: Path, passphrase
 
 def opened_by(qtbot: QtBot, controller: LibraryController, ask: Opening) -> OpenedState:
     """What comes of asking to open a library that does open."""
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.opened):
         controller.open(ask)
     assert controller.state is not None
     return controller.state
@@ -68,7 +67,7 @@ def opened_by(qtbot: QtBot, controller: LibraryController, ask: Opening) -> Open
 
 def not_opened_by(qtbot: QtBot, controller: LibraryController, ask: Opening) -> tuple[str, str, bool]:
     """The two sentences, and whether it was the key, of one that does not open."""
-    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.not_opened) as reported:
         controller.open(ask)
     what, remedy, is_key = reported.args or []
     return str(what), str(remedy), bool(is_key)
@@ -77,5 +76,5 @@ def not_opened_by(qtbot: QtBot, controller: LibraryController, ask: Opening) -> 
 def asked(qtbot: QtBot, controller: LibraryController, call: Callable[[OpenedLibrary], object]) -> object:
     asker = Asker()
     controller.run(call, asker.on_done, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=10_000)
+    qtbot.waitUntil(lambda: bool(asker.results))
     return asker.results[0]

@@ -9,8 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.system.progress import Report
 from app.workers.background import Background, Stopped
-
-WAIT_S = 5.0
+from tests.waiting import PATIENCE_S
 
 
 @pytest.fixture
@@ -78,7 +77,7 @@ def test_what_was_stopped_shows_once_it_has_ended_whether_it_was_done(
     go_on = Event()
 
     def work(report: Report) -> None:
-        assert go_on.wait(WAIT_S)
+        assert go_on.wait(PATIENCE_S)
         if not is_done:
             report(1.0, "")
 
@@ -116,7 +115,7 @@ def test_nothing_is_received_of_stopped_work_that_ends_well_all_the_same(qtbot: 
     go_on = Event()
 
     def work(_report: Report) -> str:
-        go_on.wait(WAIT_S)  # deaf to the stop, as a long step of an analysis is
+        go_on.wait(PATIENCE_S)  # deaf to the stop, as a long step of an analysis is
         return "late"
 
     background.start(work)

@@ -46,7 +46,6 @@ from tests.app.room import is_cut
 
 PASSPHRASE = "four short words here"
 SECRET_CODE = "P-0147"
-WAIT_MS = 20_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
@@ -99,12 +98,12 @@ def window(open_window: Open) -> MainWindow:
 def logged_in(qtbot: QtBot, window: MainWindow) -> None:
     assert window.entry is not None
     page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.operator.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operator.count() == 1)
     QTest.keyClicks(page.passphrase.line_edit, PASSPHRASE)
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home)
     assert window.home is not None
-    qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None)
 
 
 def words_in_sight(window: MainWindow) -> str:
@@ -121,12 +120,12 @@ def test_home_and_wizard_are_made_while_somebody_types_the_passphrase(
     window = open_window(folder)
     assert window.entry is not None
     page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.operator.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operator.count() == 1)
     QTest.keyClicks(page.passphrase.line_edit, PASSPHRASE[:5])
     typing, shown = QApplication.focusWidget(), window.screens.currentWidget()
     assert typing is page.passphrase.line_edit
     window.preparing.done.emit(None)
-    qtbot.waitUntil(lambda: window.wizard is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.wizard is not None)
     assert window.home is not None
     assert window.screens.currentWidget() is shown
     assert QApplication.focusWidget() is typing
@@ -153,7 +152,7 @@ def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
     assert page.again.is_wrong
     QTest.keyClicks(page.again.line_edit, PASSPHRASE[-1])
     QTest.mouseClick(page.make, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: page.typed.isVisible(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.typed.isVisible())
     key = page.recovery_key
     asked = "-".join(key.split("-")[-2:])
     assert "Last two groups" in page.typed.line_edit.accessibleName()
@@ -169,7 +168,7 @@ def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
     assert key not in " ".join(label.text() for label in page.findChildren(QLabel))
     slots = KeySlots(tmp_path / "new" / KEYS)
     assert slots.open_with_recovery_key(key)
-    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed)
 
 
 def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
@@ -181,10 +180,10 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
         window = open_window(folder)
         assert window.entry is not None
         page, log_in = window.entry.first_start, window.entry.log_in
-        qtbot.waitUntil(lambda log_in=log_in: log_in.operator.count() == 1, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        qtbot.waitUntil(lambda log_in=log_in: log_in.operator.count() == 1)  # type: ignore[misc]  # pytest-qt's types
         log_in.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
-        qtbot.waitUntil(page.later.isVisible, timeout=WAIT_MS)
+        qtbot.waitUntil(page.later.isVisible)
         assert "It is the only way to open the library if the passphrase is forgotten" in words_in_sight(window)
         assert key not in words_in_sight(window)
         if put_off:
@@ -195,10 +194,10 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
             continue
         page.typed.set_text("-".join(key.split("-")[-2:]))  # which is not enough where it is not shown
         page.go.click()
-        qtbot.waitUntil(lambda page=page: page.typed.is_wrong, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        qtbot.waitUntil(lambda page=page: page.typed.is_wrong)  # type: ignore[misc]  # pytest-qt's types
         page.typed.set_text(key)
         page.go.click()
-        qtbot.waitUntil(lambda window=window: window.screens.currentWidget() is window.home, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        qtbot.waitUntil(lambda window=window: window.screens.currentWidget() is window.home)  # type: ignore[misc]  # pytest-qt's types
     assert slots.is_recovery_key_confirmed
 
 
@@ -212,12 +211,12 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
     assert window.entry is not None
     log_in = window.entry.log_in
     shown: list[QWidget] = []
-    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: log_in.operator.count() == 1)
     window.entry.shown.connect(shown.append)
     log_in.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
     window.open_demonstration()
-    qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home)
     assert window.controller.state is not None
     assert window.controller.state.is_demonstration
     assert shown == [window.entry.waiting]
@@ -226,9 +225,7 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
 def in_demonstration(qtbot: QtBot, window: MainWindow) -> None:
     """Open it from home, as by its button."""
     window.open_demonstration()
-    qtbot.waitUntil(
-        lambda: window.screens.currentWidget() is window.home and window.controller.state is not None, timeout=WAIT_MS
-    )
+    qtbot.waitUntil(lambda: window.screens.currentWidget() is window.home and window.controller.state is not None)
     assert window.controller.state is not None
     assert window.controller.state.is_demonstration
 
@@ -246,7 +243,7 @@ def test_who_leaves_the_demonstration_is_in_the_own_library_without_a_passphrase
     window.entry.shown.connect(shown.append)
     window.home.own_library_requested.emit()
     assert window.home.state is None  # nothing of the demonstration is left in sight
-    qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None)
     assert window.screens.currentWidget() is window.home
     assert SECRET_CODE in words_in_sight(window)
     assert shown == [window.entry.waiting]  # and no log-in
@@ -262,7 +259,7 @@ def test_five_minutes_without_anybody_log_out_behind_the_demonstration(
     assert window.home is not None
     assert window.entry is not None
     window.lock()  # as `idle` asks for it
-    qtbot.waitUntil(lambda: window.controller.kept is None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.controller.kept is None)
     assert window.screens.currentWidget() is window.home  # simulated patients are shown on
     window.home.own_library_requested.emit()
     assert window.screens.currentWidget() is window.entry.log_in
@@ -278,7 +275,7 @@ def test_a_demonstration_that_does_not_open_leaves_the_library_open_and_is_repor
     window = open_window(folder)
     logged_in(qtbot, window)
     assert window.home is not None
-    with qtbot.waitSignal(window.controller.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(window.controller.opened):
         window.open_demonstration()
     assert window.screens.currentWidget() is window.home
     assert "There is no room." in words_in_sight(window)
@@ -294,13 +291,13 @@ def test_another_language_opens_the_window_again_where_it_was_and_without_a_pass
     assert kept is not None
     following = open_window(folder)
     following.go_on(kept)
-    qtbot.waitUntil(lambda: following.controller.state is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: following.controller.state is not None)
     assert following.home is not None
     assert following.screens.currentWidget() is following.home
     assert isinstance(following.home.current, SettingsPage)
     following.idle.lock_now()  # which asks for the passphrase as ever
     assert following.is_covered
-    qtbot.waitUntil(lambda: not _key_of(following), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not _key_of(following))
 
 
 def test_whoever_changes_the_language_stays_logged_in(
@@ -319,7 +316,7 @@ def test_whoever_changes_the_language_stays_logged_in(
         return main_window.IN_ANOTHER_LANGUAGE
 
     def second() -> int:
-        qtbot.waitUntil(lambda: window().controller.state is not None, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: window().controller.state is not None)
         seen.append(words_in_sight(window()))
         return 0
 
@@ -346,12 +343,12 @@ def renewed(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, 
     window = open_window(folder)
     assert window.entry is not None
     page, log_in = window.entry.first_start, window.entry.log_in
-    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: log_in.operator.count() == 1)
     log_in.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.renew.isVisible)
     page.renew.click()
-    qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(page.recovery_key))
     return window, slots
 
 
@@ -363,7 +360,7 @@ def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Op
     page.typed.set_text("-".join(page.recovery_key.split("-")[-2:]))
     page.go.click()
     assert window.screens.currentWidget() is window.home
-    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed)
 
 
 def test_a_new_recovery_key_is_covered_by_the_lock_and_not_shown_again(
@@ -379,13 +376,13 @@ def test_a_new_recovery_key_is_covered_by_the_lock_and_not_shown_again(
     assert key[:4] not in words_in_sight(window)
     log_in.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: not window.is_covered, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not window.is_covered)
     assert page.recovery_key == ""
     assert key[:4] not in words_in_sight(window)
     assert page.renew.isVisible()  # or the old one is typed from its sheet
     page.typed.set_text(key)
     page.go.click()
-    qtbot.waitUntil(lambda: window.screens.currentWidget() is window.home, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.screens.currentWidget() is window.home)
     assert slots.is_recovery_key_confirmed
 
 
@@ -401,11 +398,11 @@ def test_who_was_given_a_passphrase_chooses_an_own_one_before_anything_is_shown(
     window = open_window(folder)
     assert window.entry is not None
     page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.operator.count() == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operator.count() == 2)
     page.operator.setCurrentIndex(page.operator.findData("ab"))
     page.passphrase.set_text("the first one she got")
     page.go.click()
-    qtbot.waitUntil(page.new_passphrase.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.new_passphrase.isVisible)
     assert not page.passphrase.isVisible()
     for key in (Qt.Key.Key_O, Qt.Key.Key_D, Qt.Key.Key_Escape):
         QTest.keyClick(window, key, Qt.KeyboardModifier.ControlModifier)
@@ -413,16 +410,14 @@ def test_who_was_given_a_passphrase_chooses_an_own_one_before_anything_is_shown(
     assert page.passphrase.isVisible()
     page.passphrase.set_text("the first one she got")
     page.go.click()
-    qtbot.waitUntil(page.new_passphrase.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.new_passphrase.isVisible)
     for passphrase in ("the first one she got", own):
         assert window.screens.currentWidget() is page
         page.new_passphrase.set_wrong("")
         page.new_passphrase.set_text(passphrase)
         page.again.set_text(passphrase)
         page.go.click()
-        qtbot.waitUntil(
-            lambda: page.new_passphrase.is_wrong or window.screens.currentWidget() is window.home, timeout=WAIT_MS
-        )
+        qtbot.waitUntil(lambda: page.new_passphrase.is_wrong or window.screens.currentWidget() is window.home)
         assert page.new_passphrase.is_wrong is (passphrase != own)
     assert page.new_passphrase.text == ""
     assert not slots.is_given("ab")
@@ -508,15 +503,15 @@ def test_after_three_wrong_passphrases_the_next_try_waits_and_states_so(
     window = open_window(folder)
     assert window.entry is not None
     page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.operator.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operator.count() == 1)
     for _ in range(3):
         page.passphrase.set_text("not this one")
         QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
-        qtbot.waitUntil(lambda: page.passphrase.is_wrong, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: page.passphrase.is_wrong)
         page.passphrase.set_wrong("")
     assert page.go.text() == "Next try in 2 s"
     assert not page.go.isEnabled()
-    qtbot.waitUntil(page.go.isEnabled, timeout=WAIT_MS)
+    qtbot.waitUntil(page.go.isEnabled)
 
 
 def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, open_window: Open, folder: Path) -> None:
@@ -529,7 +524,7 @@ def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, ope
     window = open_window(folder)
     assert window.entry is not None
     page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.passphrase.is_wrong, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.passphrase.is_wrong)
     assert page.go.text() == "Next try in 16 s"
     assert not page.go.isEnabled()
     page.use_recovery.click()
@@ -564,11 +559,11 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     assert page.isVisible()
     page.passphrase.set_text("not this one")
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: page.passphrase.is_wrong, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.passphrase.is_wrong)
     assert window.is_covered
     page.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: not window.is_covered, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not window.is_covered)
     assert SECRET_CODE in words_in_sight(window)
 
 
@@ -578,7 +573,7 @@ def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, open
     home = window.home
     assert home is not None
     home.page.panel.delete_patient.trigger()
-    qtbot.waitUntil(lambda: home.deleting.dialog is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.deleting.dialog is not None)
     window.lock()
     assert home.deleting.dialog is None
     assert SECRET_CODE not in words_in_sight(window)
@@ -610,7 +605,7 @@ def test_another_operator_leaves_nothing_behind(qtbot: QtBot, open_window: Open,
     logged_in(qtbot, window)
     window.lock()
     assert window.entry is not None
-    with qtbot.waitSignal(window.controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(window.controller.closed):
         QTest.mouseClick(window.entry.log_in.leave, Qt.MouseButton.LeftButton)
     assert not window.is_covered
     assert window.home is not None
@@ -623,7 +618,7 @@ def test_a_folder_is_opened_without_any_library_and_left_for_the_log_in(
 ) -> None:
     window = open_window(folder)
     window.open_folder(tmp_path)
-    qtbot.waitUntil(window.session.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(window.session.banner.isVisible)
     assert window.screens.currentWidget() is window.session
     QTest.keyClick(window, Qt.Key.Key_Escape)
     assert window.entry is not None
@@ -670,7 +665,7 @@ def test_escape_stops_an_analysis(qtbot: QtBot, window: MainWindow, monkeypatch:
 
     monkeypatch.setattr(session_screen, "opening_folder", lambda _folder: work)
     window.open_folder(Path("visit"))
-    qtbot.waitUntil(lambda: window.session.working.progress[0] > 0, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.session.working.progress[0] > 0)
     QTest.keyClick(window, Qt.Key.Key_Escape)
     assert not window.session.is_working
     assert window.session.pages.currentWidget() is window.session.empty
@@ -702,7 +697,7 @@ def test_the_language_is_kept_and_only_another_one_is_reported(qtbot: QtBot, set
     assert settings.language == "en"
     with qtbot.assertNotEmitted(settings.language_changed):
         settings.language = "en"
-    with qtbot.waitSignal(settings.language_changed, timeout=WAIT_MS):
+    with qtbot.waitSignal(settings.language_changed):
         settings.language = "de"
     assert settings.language == "de"
     settings.language = "fr"
@@ -811,7 +806,7 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_again(
     entry.begin()
     assert not page.make.isVisible()
     elsewhere.rename(folder)
-    qtbot.waitUntil(lambda: window.screens.currentWidget() is entry.log_in, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.screens.currentWidget() is entry.log_in)
 
 
 def test_where_no_library_was_the_first_start_offers_one(open_window: Open, folder: Path, tmp_path: Path) -> None:
@@ -832,14 +827,14 @@ def test_a_library_that_goes_is_stated_at_home_and_so_is_its_return(
     assert home is not None
     elsewhere = folder.with_name("renamed")
     folder.rename(elsewhere)
-    qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is no longer in {folder}."), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is no longer in {folder}."))
     window.lock()
     entry = window.entry
     assert entry is not None
     # home may have been refused its list before the library was missed
-    qtbot.waitUntil(lambda: entry.log_in.banner.text == home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: entry.log_in.banner.text == home.banner.text)
     elsewhere.rename(folder)
-    qtbot.waitUntil(lambda: entry.log_in.banner.text.startswith("The library is available again."), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: entry.log_in.banner.text.startswith("The library is available again."))
     assert entry.log_in.banner.text == home.banner.text
 
 
@@ -856,7 +851,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     library = state.library.library
     session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(window.controller.gone):
         folder.rename(elsewhere)
     reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     writer = JournalWriter.create(
@@ -864,7 +859,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     )
     writer.mark(Belonging(session_id, reported).text())
     writer.stop()
-    with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
+    with qtbot.waitSignal(home.recovering.recovered):
         elsewhere.rename(folder)
     assert home.banner.text == "The library is available again. 1 recording made meanwhile was added."
     home.banner.dismiss.click()
@@ -888,21 +883,21 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
     elsewhere, data_key, page = folder.with_name("renamed"), bytes(state.library.data_key or b""), entry.log_in
     window.lock()
-    qtbot.waitUntil(lambda: not state.library.data_key, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not state.library.data_key)
     for name in ("walk 1", "walk 2"):  # a disk that comes and goes
-        with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):
+        with qtbot.waitSignal(window.controller.gone):
             folder.rename(elsewhere)
         reported = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
         with JournalWriter.create(
             state.library.recordings, uuid7(), data_key, room=ANY_ROOM, shelter=state.library.shelter
         ) as writer:
             writer.mark(Belonging(session_id, reported).text())
-        with qtbot.waitSignal(window.controller.back, timeout=WAIT_MS):
+        with qtbot.waitSignal(window.controller.back):
             elsewhere.rename(folder)
         assert page.banner.text == "The library is available again. 1 recording made meanwhile was added."
     assert len(list(state.library.recordings.glob("*.journal"))) == 2
     assert not state.library.data_key
-    with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
+    with qtbot.waitSignal(home.recovering.recovered):
         page.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
     assert not window.is_covered
@@ -917,11 +912,11 @@ def test_where_the_environment_names_no_server_that_answers_it_is_stated_and_tri
     window = open_window(tmp_path / "clinic")
     assert window.entry is not None
     page = window.entry.join
-    qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.isVisible)
     assert "This is not the address of a PostgreSQL server" in page.lead.text()
     page.again.click()
     assert window.entry.waiting.isVisible()
-    qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.isVisible)
     assert not (tmp_path / "clinic").exists()
 
 

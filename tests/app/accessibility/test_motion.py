@@ -23,8 +23,6 @@ from app.theme.theme import Theme
 from app.wizard.shell import WizardShell
 from app.wizard.step import StepId
 
-WAIT_MS = 2000
-
 
 @pytest.fixture(autouse=True)
 def _moving_system(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
@@ -100,7 +98,7 @@ def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(q
     fades = [one for one in shell.findChildren(QWidget) if type(one).__name__ == "_Fade"]
     assert len(fades) == 1
     assert fades[0].isVisible() is not is_less
-    qtbot.waitUntil(lambda: not fades[0].isVisible(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not fades[0].isVisible())
 
 
 def test_legs_move_only_when_somebody_plays_them(qtbot: QtBot) -> None:

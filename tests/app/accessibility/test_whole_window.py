@@ -23,7 +23,6 @@ from tests.app.accessibility.reach import out_of_reach
 from tests.app.home.course_library import PASSPHRASE, make_course_library
 from tests.app.room import settle, words_cut
 
-WAIT_MS = 20_000
 QUESTIONS = 3  # its row in the rail
 pytestmark = pytest.mark.endurance
 
@@ -48,10 +47,10 @@ def home(qtbot: QtBot, controller: LibraryController, untouched: Path, tmp_path:
     with qtbot.waitActive(home):
         home.show()
         home.activateWindow()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         controller.open(lambda holder: holder.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE))
     home.show_library((reported.args or [])[0])
-    qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines))
     yield home
     home.finish()
 

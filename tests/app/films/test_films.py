@@ -115,7 +115,7 @@ def test_a_film_plays_once_and_space_or_a_click_stops_it_and_plays_it_again(
         states.append(page.text.is_playing)
     assert states == [False, True, True, False, True]
     monkeypatch.setattr(help_reader, "duration_s", lambda _film: 0.1)
-    qtbot.waitUntil(lambda: not page.text.is_playing, timeout=2000)
+    qtbot.waitUntil(lambda: not page.text.is_playing)
     QTest.keyClick(page.text, Qt.Key.Key_Space)
     assert page.text.is_playing
 

@@ -40,7 +40,8 @@ from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
 from devices.source import SourceInfo
-from tests.app.home.home_library import PASSPHRASE, WAIT_MS, delete_patient, open_library
+from tests.app.home.home_library import PASSPHRASE, delete_patient, open_library
+from tests.waiting import PATIENCE_S
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
@@ -65,7 +66,7 @@ def restores(home: Home) -> dict[str, Button]:
 
 def test_the_latest_seen_comes_first_with_its_sessions(qtbot: QtBot, home: Home) -> None:
     assert codes(home) == ["P-0163", "P-0147"]
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     assert [line.when for line in sessions(home)] == ["20 May 2026", "20 Apr 2026", "20 Mar 2026"]
     first = home.page.patients.lines[0]
     assert isinstance(first, PatientLine)
@@ -99,7 +100,7 @@ def test_arrows_choose_while_typing_and_enter_begins(qtbot: QtBot, home: Home) -
 
 
 def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     place = home.page.sessions.visualRect(home.page.sessions.cells.index(1, 0)).center()
     with qtbot.waitSignal(home.session_opened) as reported:
         QTest.mouseClick(home.page.sessions.viewport(), Qt.MouseButton.LeftButton, pos=place)
@@ -112,10 +113,10 @@ def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -
 
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
     assert home.toast.text == "P-0163 was deleted. The deletion becomes permanent in 30 days."
     home.toast.undo()
-    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"])
     assert home.bar.primary.text() == "New session for P-0163"
 
 
@@ -123,53 +124,53 @@ def test_what_is_taken_back_while_the_settings_are_in_sight_is_not_listed_there_
     qtbot: QtBot, home: Home
 ) -> None:
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
     home.show_settings()
     rows = home.settings.page.deleted_rows
-    qtbot.waitUntil(lambda: rows.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: rows.count() == 1)
     home.toast.undo()
-    qtbot.waitUntil(lambda: rows.count() == 0, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: rows.count() == 0)
 
 
 def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
-    qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 2)
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
     home.show_settings()
     patient, session = "Restore, P-0163, 1951, female · right affected", "Restore, P-0163, 20 May 2026"
-    qtbot.waitUntil(lambda: list(restores(home)) == [patient], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: list(restores(home)) == [patient])
     restores(home)[patient].click()
-    qtbot.waitUntil(lambda: list(restores(home)) == [session], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: list(restores(home)) == [session])
     restores(home)[session].click()
-    qtbot.waitUntil(lambda: restores(home) == {}, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: [one.sessions for one in lines(home)] == ["3 sessions", "0 sessions"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: restores(home) == {})
+    qtbot.waitUntil(lambda: [one.sessions for one in lines(home)] == ["3 sessions", "0 sessions"])
     assert not home.settings.page.none_deleted.isHidden()
 
 
 def test_a_deleted_session_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
-    qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 2)
     home.toast.undo()
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
 
 
 def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
     assert home.toast.text == "P-0163 was deleted. The deletion becomes permanent in 30 days."
     home.page.search.setFocus()
     home.page.search.insert("0")  # what may be taken back here, too
     QTest.keyClick(home.page.search, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)  # the session stays deleted
+    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"])
+    qtbot.waitUntil(lambda: len(sessions(home)) == 2)  # the session stays deleted
     assert home.page.search.text() == "0"
 
 
@@ -187,13 +188,13 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
     home.page.empty.importing.clicked.emit()
     home.importing.read([tmp_path / "visit"])
-    qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.importing.page)
     assert home.importing.page.code.text == "P-0200"
     assert home.bar.primary.text() == "Import for P-0200"
     QTest.keyClick(home.importing.page.code.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: home.current is home.page and "P-0200" in codes(home), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.page and "P-0200" in codes(home))
     assert home.bar.primary.text() == "New session for P-0200"
-    qtbot.waitUntil(lambda: [line.amount for line in sessions(home)] == ["1 recording"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [line.amount for line in sessions(home)] == ["1 recording"])
 
 
 @pytest.mark.parametrize("is_done", [False, True])
@@ -211,19 +212,19 @@ def test_a_stopped_import_states_what_came_of_it_once_that_is_known(
     go_on = threading.Event()
 
     def held(opened: OpenedLibrary, session: Session, report: Callable[[float, str], None], code: str) -> object:
-        assert go_on.wait(WAIT_MS / 1000)
+        assert go_on.wait(PATIENCE_S)
         return import_session(opened, session, (lambda _share, _what: None) if is_done else report, code)
 
     monkeypatch.setattr("app.home.importing.controller.import_session", held)
     home.importing.read([tmp_path / "visit"])
-    qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.importing.page)
     home.importing.take_in()
     home.working.stop.click()
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text
     go_on.set()
     what = "finished before it could be stopped. The session is in" if is_done else "stopped. No session was added to"
-    qtbot.waitUntil(lambda: what in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: what in home.banner.text)
     assert controller.state is not None
     library = controller.state.library.library
     patient = library.patients.find("P-0200")
@@ -249,20 +250,20 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
     home.working.stop.click()
     assert home.page.isVisible()
     assert home.banner.text.startswith("Stopped.")
-    qtbot.waitUntil(lambda: process.poll() is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: process.poll() is not None)
 
     def is_read() -> bool:
         if home.page.isVisible():  # what was stopped has not ended yet
             home.importing.read([tmp_path / "visit"])
         return home.importing.page.isVisible()
 
-    qtbot.waitUntil(is_read, timeout=WAIT_MS)
+    qtbot.waitUntil(is_read)
 
 
 def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     (tmp_path / "nothing").mkdir()
     home.importing.read([tmp_path / "nothing"])
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert "session.toml" in home.banner.text
     assert home.current is home.page
 
@@ -303,12 +304,12 @@ def test_what_was_being_recorded_is_recovered_and_marked(
     qtbot.addWidget(home)
     home.show()
     open_library(qtbot, controller, home, folder)
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert "of walk 3 was recovered" in home.banner.text
-    qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)))
     (marked,) = (line for line in sessions(home) if line.needs_look)
     assert (marked.id, marked.state) == (session_id, "include or exclude?")
-    qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False])
 
 
 def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
@@ -319,25 +320,25 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     recover_all(folder)
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     asked = "walk 3 of P-0163 was recovered earlier and still awaits a decision."
     assert home.banner.text == f"{asked} Review the recording, then include or exclude it."
-    qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False])
+    qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id])
     home.session_opened.emit(session_id)  # looking is not deciding
     home.patients.read()
-    qtbot.waitUntil(lambda: any(one.needs_look for one in sessions(home)), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: any(one.needs_look for one in sessions(home)))
     with Library.open(folder, KeySlots(folder / KEYS).open("hk", PASSPHRASE)) as library:
         library.log_in("hk")
         (walk,) = library.recordings.undecided()
         library.recordings.decide(walk.recording, is_kept=True)
     home.patients.read()
-    qtbot.waitUntil(lambda: not any_needs_look(home), timeout=WAIT_MS)
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    qtbot.waitUntil(lambda: not any_needs_look(home))
+    with qtbot.waitSignal(controller.closed):
         controller.close()
     later = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, later, folder)
-    qtbot.waitUntil(lambda: len(sessions(later)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(later)) == 3)
     assert later.banner.isHidden()
     assert not any_needs_look(later)
 
@@ -350,7 +351,7 @@ def test_several_recovered_walks_are_asked_for_together(
     recover_all(folder)
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert home.banner.text.startswith("2 walks were recovered earlier and still await a decision.")
 
 
@@ -386,17 +387,17 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     qtbot.addWidget(home)
     home.show()
     open_library(qtbot, controller, home, folder)
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert (
         "of walk 3 was recorded while the library did not respond. The recording is now in its session."
         in home.banner.text
     )
-    qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)))
     home.banner.dismiss.click()
     assert home.banner.text.startswith("2 recordings, 00:00 in total, are not assigned to a session.")
     assert home.banner.act.text() == "Export"
     home.recovering.export(tmp_path / "out")
-    qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text)
     assert len(list((tmp_path / "out").glob("*/LT-1.csv"))) == 2
     assert home.banner.act.isHidden()
     assert controller.state is not None
@@ -405,7 +406,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     looked_through: list[object] = []
     home.recovering.recovered.connect(lambda: looked_through.append(None))
     open_library(qtbot, controller, home, folder)
-    qtbot.waitUntil(lambda: bool(looked_through), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(looked_through))
     assert controller.state is not None
     assert len(controller.state.interrupted) == 2  # they are kept, but informed of no more
     assert home.banner.text.startswith("walk 3 of P-0163 was recovered earlier")
@@ -441,7 +442,7 @@ def test_the_passphrase_is_changed_with_the_old_one_only(qtbot: QtBot, home: Hom
         for field, text in ((page.old, old), (page.new, new), (page.again, new)):
             field.set_text(text)
         QTest.mouseClick(page.change, Qt.MouseButton.LeftButton)
-        qtbot.waitUntil(lambda: page.old.is_wrong or page.old.text == "", timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: page.old.is_wrong or page.old.text == "")
         assert page.old.is_wrong is not is_right
     KeySlots(folder / KEYS).open("hk", new)
 
@@ -450,7 +451,7 @@ def test_a_new_recovery_key_ends_the_old_one(qtbot: QtBot, home: Home, folder: P
     home.show_settings()
     page = home.settings.page
     QTest.mouseClick(page.renew, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(page.recovery_key))
     KeySlots(folder / KEYS).open_with_recovery_key(page.recovery_key)
     assert page.print.isVisible()
 
@@ -459,9 +460,9 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     page = home.settings.page
     (tmp_path / "disk").mkdir()
     home.settings.set_backup_folder(str(tmp_path / "disk"))
-    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text())
     page.backup_requested.emit()
-    qtbot.waitUntil(lambda: "checked" in page.backup_stated.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "checked" in page.backup_stated.text())
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
 
 
@@ -471,7 +472,7 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
     page, state = home.settings.page, controller.state
     assert state is not None
     home.settings.set_backup_folder(str(tmp_path / "disk"))
-    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text())
     home.settings.show_library(replace(state, library=replace(state.library, data_key=None)))
     assert page.backup_folder.text() == "No backup folder chosen yet."
 
@@ -496,7 +497,7 @@ def test_an_older_state_of_the_library_is_stated_and_an_administrator_may_accept
     )
     if role is Role.ADMINISTRATOR:
         button.click()
-        qtbot.waitUntil(lambda: not home.notices.rollback.isVisible(), timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: not home.notices.rollback.isVisible())
 
 
 def test_what_became_of_work_without_the_server_is_stated_and_of_other_libraries_nothing(
@@ -550,7 +551,7 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
         return button, button.text()
 
     add("first words for now")
-    qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operators.rows.count() == 2)
     shutil.copy(folder / KEYS, folder.parent / "old.json")
     row()[0].click()
     assert (
@@ -561,7 +562,7 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     row()[0].click()
     page.operators.remove.click()
     assert not page.operators.isEnabled()
-    qtbot.waitUntil(lambda: row()[1] == "Reactivate user", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: row()[1] == "Reactivate user")
     assert "has a new key" in page.operators.leaving_words.text()
     stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
     with pytest.raises(LibraryError):
@@ -571,7 +572,7 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     row()[0].click()
     assert page.operators.first.is_wrong
     add("other words for then")
-    qtbot.waitUntil(lambda: row()[1] == "Remove user", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: row()[1] == "Remove user")
     assert KeySlots(folder / KEYS).open("ab", "other words for then") == controller.state.library.data_key
 
 
@@ -584,9 +585,9 @@ def test_an_operator_is_added_and_may_log_in(
     page.operators.first.set_text("first words for now")
     page.operators.role.setCurrentIndex(page.operators.role.findData("viewer"))
     page.operators.add.click()
-    qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operators.rows.count() == 2)
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         controller.open(lambda holder: holder.open(folder, "first words for now", "vi"))
     (state,) = reported.args or []
     assert state.operator.role is Role.VIEWER
@@ -601,11 +602,11 @@ def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_rea
     page = home.page
     visited = next(line.id for line in lines(home) if line.code == "P-0163")
     page.patients.choose_line(visited)
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     page.patients.choose_line(next(line.id for line in lines(home) if line.code == "P-0147"))
     assert sessions(home) == []
     assert not page.panel.none_yet.isVisible()
-    qtbot.waitUntil(page.panel.none_yet.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.panel.none_yet.isVisible)
 
 
 def closed_amid(folder: Path, name: str) -> UUID:
@@ -627,11 +628,11 @@ def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
     session_id = closed_amid(folder, "walk 3")
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     asked = "The program was closed before A Shoes of P-0163 was included or excluded."
     assert (
         home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Review the recording, then include or exclude it."
     )
-    qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id])
     (marked,) = (line for line in sessions(home) if line.needs_look)
     assert marked.state == "include or exclude?"

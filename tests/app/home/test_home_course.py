@@ -32,8 +32,6 @@ from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
 from tests.simulated import session_of
 
-WAIT_MS = 20_000
-
 
 @pytest.fixture(scope="module")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -48,10 +46,10 @@ def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouc
     qtbot.addWidget(home)
     home.show()
     folder = shutil.copytree(untouched, tmp_path / "library")
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as known:
+    with qtbot.waitSignal(controller.opened) as known:
         controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     home.show_library((known.args or [])[0])
-    qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines))
     return home
 
 
@@ -81,7 +79,7 @@ def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot
     other = next(line.id for line in home.page.patients.lines if line.id != home.page.patient_id)
     home.page.patients.choose_line(other)
     assert not card.isVisible()  # at once: nobody else's course is under this code
-    qtbot.waitUntil(lambda: home.page.panel.none_yet.isVisible(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.page.panel.none_yet.isVisible())
     assert not card.isVisible()
 
 
@@ -94,7 +92,7 @@ def test_w_opens_the_report_step_of_the_visit_but_in_the_search_it_is_typed(qtbo
         QTest.keyClick(home.page.search, Qt.Key.Key_W)
     assert home.page.search.text() == "w"
     home.page.search.clear()
-    qtbot.waitUntil(home.page.panel.go.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.page.panel.go.isVisible)
     with qtbot.waitSignal(home.report_requested) as reported:
         QTest.keyClick(home.page.search, Qt.Key.Key_W, Qt.KeyboardModifier.AltModifier)
     assert reported.args == [latest]
@@ -108,7 +106,7 @@ def test_the_list_has_the_last_change_of_patients_in_sight(qtbot: QtBot, home: H
     def stated() -> list[str]:
         return [line.last for line in home.page.patients.lines if isinstance(line, PatientLine)]
 
-    qtbot.waitUntil(lambda: stated()[0] == "knee +11° since 20 Jun", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: stated()[0] == "knee +11° since 20 Jun")
     assert stated()[1:] == ["0 sessions"] * 3
 
 
@@ -124,9 +122,9 @@ def test_visits_that_cannot_be_computed_are_stated_and_the_others_stay(qtbot: Qt
     """Of the fixture no samples were recorded: its journal is gone."""
     home.page.panel.course.compute.click()
     assert home.current is home.working
-    qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.page)
     assert home.banner.text.startswith("1 visit could not be calculated. Open the visit to see why.")
-    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5)
     assert home.page.panel.course.visits[1].course is None
 
 
@@ -135,7 +133,7 @@ def test_computing_can_be_stopped(qtbot: QtBot, home: Home) -> None:
     home.working.stop.click()
     assert home.current is home.page
     assert home.banner.text.startswith("Stopped. Visits calculated so far stay in Progress.")
-    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5)
 
 
 def reading(opened: OpenedLibrary) -> PatientReading:
@@ -212,7 +210,7 @@ def test_a_report_is_written_once_its_export_has_ended_well(opened: OpenedLibrar
 
 def wait_for_goals(qtbot: QtBot, home: Home, count: int) -> None:
     page = home.goals.page
-    qtbot.waitUntil(lambda: sum(row.take_back is not None for row in page.rows) == count, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sum(row.take_back is not None for row in page.rows) == count)
 
 
 def test_a_goal_is_agreed_by_keys_is_in_the_course_and_is_taken_back(qtbot: QtBot, home: Home) -> None:
@@ -229,7 +227,7 @@ def test_a_goal_is_agreed_by_keys_is_in_the_course_and_is_taken_back(qtbot: QtBo
     assert page.value.text == ""
     assert page.rows[0].about.text().endswith(", H. Keller")
     home.bar.back_pressed.emit()
-    qtbot.waitUntil(lambda: any(lane.goals for lane in panel.course.lanes), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: any(lane.goals for lane in panel.course.lanes))
     speed = panel.course.lanes[0]
     assert (speed.kind, speed.goal_values) == (SPEED_LANE, [1.2])
     assert "Goal: Walking speed: at least 1.20" in panel.course.accessibleDescription()
@@ -241,7 +239,7 @@ def test_a_goal_is_agreed_by_keys_is_in_the_course_and_is_taken_back(qtbot: QtBo
     wait_for_goals(qtbot, home, 0)
     assert [row.key for row in page.rows] == [("speed_m_s", GoalOf.WALK)]
     home.bar.back_pressed.emit()
-    qtbot.waitUntil(lambda: not any(lane.goals for lane in panel.course.lanes), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not any(lane.goals for lane in panel.course.lanes))
 
 
 def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
@@ -249,7 +247,7 @@ def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
 ) -> None:
     panel, page = home.page.panel, home.goals.page
     panel.goals.click()
-    qtbot.waitUntil(lambda: page.none_yet.isVisible(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.none_yet.isVisible())
     patient = home.patients.patient
     assert patient is not None
     theirs = Goal("speed_m_s", GoalOf.WALK, 0.9, datetime.date(2026, 1, 5), "B. Berger")
@@ -262,7 +260,7 @@ def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
     page.measure.setCurrentIndex(GOAL_COLUMNS.index("speed_m_s"))
     QTest.keyClicks(page.value.line_edit, "1.2")
     page.submit()
-    qtbot.waitUntil(lambda: home.banner.isVisible(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.banner.isVisible())
     assert home.banner.text.startswith("Goal, Walking speed was changed in the meantime (H. Keller, ")
     assert page.rows[0].limit.text() == "at least 0.90\N{NO-BREAK SPACE}m/s"
     assert page.value.text == "1.2"  # what was typed stays

@@ -385,7 +385,7 @@ def test_a_session_without_joints_is_no_trouble(qtbot: QtBot, window: SessionScr
 @pytest.mark.endurance
 def test_the_demonstration_is_analysed_and_shown(qtbot: QtBot, window: SessionScreen) -> None:
     window.open_demonstration()
-    qtbot.waitUntil(lambda: not window.is_working, timeout=60_000)
+    qtbot.waitUntil(lambda: not window.is_working)
     page = window.results
     assert page is not None, window.banner.text
     assert window.header.simulated.isVisible()

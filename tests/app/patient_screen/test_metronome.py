@@ -69,7 +69,7 @@ def test_what_is_sent_to_the_device_clicks_at_the_set_cadence_without_drift(
     metronome = Metronome(play=playing_to(lambda: device))
     made.append(metronome)
     metronome.start(103)
-    qtbot.waitUntil(lambda: device.is_full, timeout=60_000)
+    qtbot.waitUntil(lambda: device.is_full)
     metronome.stop()
     found_s = onsets_s(device.played[: 600 * RATE_HZ], RATE_HZ)
     assert len(found_s) == 1030
@@ -122,7 +122,7 @@ def test_a_player_beside_the_program_is_given_the_same_samples(
     metronome = Metronome(play=playing_to(lambda: PipedPlayer(["no-such-player"]), lambda: PipedPlayer(player)))
     made.append(metronome)
     metronome.start(120)
-    qtbot.waitUntil(lambda: file.exists() and file.stat().st_size == 20 * 2 * RATE_HZ, timeout=20_000)
+    qtbot.waitUntil(lambda: file.exists() and file.stat().st_size == 20 * 2 * RATE_HZ)
     found_s = onsets_s(np.frombuffer(file.read_bytes(), "<i2").astype(float), RATE_HZ)
     assert len(found_s) == 40
     assert np.abs(np.diff(found_s) - 0.5).max() < MOST_OFF_S

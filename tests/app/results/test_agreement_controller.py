@@ -73,7 +73,7 @@ def test_pages_are_shown_and_saved_as_the_command_saves_them(
     reference = write_reference(tmp_path / "walk 1.csv", rows_of(walked[2], "walk 1"))
     controller.compare([reference])
     assert words(page).startswith("Searching walk 1.csv for the recorded walks.")
-    qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
+    qtbot.waitUntil(lambda: page.sheets.count > 1)
     assert page.save.isVisible()
     assert page.note.text() == "Not compared, no matching recording: walk 2."
     asked: list[tuple[Path, Callable[[], None]]] = []
@@ -100,7 +100,7 @@ def test_what_is_no_reference_is_refused_in_its_place(
     strange = tmp_path / "notes.txt"
     strange.write_text("no angles\n", encoding="utf-8")
     controller.compare([strange])
-    qtbot.waitUntil(lambda: page.waiting.button.text() == "Choose another file", timeout=30_000)
+    qtbot.waitUntil(lambda: page.waiting.button.text() == "Choose another file")
     assert words(page).startswith("notes.txt: ")
     assert page.sheets.count == 0
     controller.show(walked[0], walked[1])  # left, and asked for again
@@ -117,7 +117,7 @@ def test_of_another_analysis_nothing_stays_in_sight(
 ) -> None:
     session, analysis, truth = walked
     controller.compare([write_reference(tmp_path / "walk 1.csv", rows_of(truth, "walk 1"))])
-    qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
+    qtbot.waitUntil(lambda: page.sheets.count > 1)
     controller.show(session, analysis)
     assert page.sheets.count > 1
     controller.show(session, analysis_of(session))
@@ -137,10 +137,10 @@ def test_walks_are_called_as_on_the_screen_and_pages_are_drawn_finer_in_a_larger
     page.resize(700, 680)
     controller.show(replace(session, recordings=named), replace(analysis))
     controller.compare([write_reference(tmp_path / "walk 1.csv", rows_of(truth, "walk 1"))])
-    qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
+    qtbot.waitUntil(lambda: page.sheets.count > 1)
     assert page.note.text() == "Not compared, no matching recording: B AFO."
     coarse, count = page.sheets.pages[0].width, page.sheets.count
     page.resize(1400, 680)
-    qtbot.waitUntil(lambda: page.sheets.pages[0].width > coarse, timeout=30_000)
+    qtbot.waitUntil(lambda: page.sheets.pages[0].width > coarse)
     assert page.sheets.count == count
     assert page.note.text() == "Not compared, no matching recording: B AFO."

@@ -215,7 +215,7 @@ def test_the_controller_answers_beside_the_screen_and_saves(
     controller.show(session, replace(analysis, findings=(*analysis.findings, *findings)), walk)
     assert not page.save.isEnabled()
     assert page.waiting.isVisible()
-    qtbot.waitUntil(lambda: page.save.isEnabled(), timeout=20_000)
+    qtbot.waitUntil(lambda: page.save.isEnabled())
     assert [button.isHidden() for button in page.joints.segments] == [True, False, True, True]
     assert page.cards.isVisible()
     noticed = " ".join(text.text() for text in page.noticed.findChildren(Text))
@@ -228,7 +228,7 @@ def test_the_controller_answers_beside_the_screen_and_saves(
     dialog.close()
     assert listener.folder == tmp_path / "figures"
     assert {one.name for one in listener.folder.iterdir()} == set(names_of_files(KNEE, True).values())
-    qtbot.waitUntil(lambda: background.is_idle, timeout=20_000)
+    qtbot.waitUntil(lambda: background.is_idle)
 
 
 def test_without_a_joint_the_page_states_so(

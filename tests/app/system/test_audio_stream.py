@@ -145,7 +145,7 @@ def test_the_first_way_that_plays_is_taken_and_one_that_ends_is_left_for_the_nex
     stream = AudioStream(
         lambda count: bytes(2 * count), lambda: failed.append("failed"), (refuse, lambda: PipedPlayer(ends), Taking)
     )
-    qtbot.waitUntil(done.is_set, timeout=10_000)
+    qtbot.waitUntil(done.is_set)
     qtbot.waitUntil(lambda: failed == ["failed"])
     assert taken == [2 * BLOCK] * 5 + [0]
     stream.close()

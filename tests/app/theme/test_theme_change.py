@@ -62,5 +62,5 @@ def test_a_part_that_another_size_reaches_later_looks_as_one_made_at_it(qtbot: Q
     for part in (reported, made):  # only one of two windows is in front, and has a ring
         if (focused := part.focusWidget()) is not None:
             focused.clearFocus()
-    qtbot.waitUntil(lambda: reported.grab().toImage() == made.grab().toImage(), timeout=2_000)  # layouts come later
+    qtbot.waitUntil(lambda: reported.grab().toImage() == made.grab().toImage())  # layouts come later
     assert reported.grab().toImage() != before

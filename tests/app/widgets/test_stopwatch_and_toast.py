@@ -102,7 +102,7 @@ def test_the_toast_goes_after_a_while(toast: Toast, qtbot: QtBot) -> None:
     assert toast_module.STAYS_MS == 6000
     toast._clock.setInterval(30)
     toast.offer("Walk 2 excluded.")
-    qtbot.waitUntil(lambda: not toast.isVisible(), timeout=2000)
+    qtbot.waitUntil(lambda: not toast.isVisible())
 
 
 def test_the_toast_stays_under_the_mouse(toast: Toast, qtbot: QtBot) -> None:
@@ -113,7 +113,7 @@ def test_the_toast_stays_under_the_mouse(toast: Toast, qtbot: QtBot) -> None:
     qtbot.wait(90)
     assert toast.isVisible()
     QApplication.sendEvent(toast, QEvent(QEvent.Type.Leave))
-    qtbot.waitUntil(lambda: not toast.isVisible(), timeout=2000)
+    qtbot.waitUntil(lambda: not toast.isVisible())
 
 
 def test_long_words_make_the_toast_higher(toast: Toast) -> None:

@@ -16,7 +16,7 @@ def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient: Patient = 
         visit.patient.commit()
     with qtbot.waitSignal(visit.changed):
         visit.record.begin()
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         visit.sensors.search(visit.choices[0])
     qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
     visit.sensors.assign_all(worn)
@@ -27,12 +27,12 @@ def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient: Patient = 
 def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> SessionRecording:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun):
         visit.recordings.begin(acquisition, kind, condition)
     acquisition.ask(kind)  # by now nothing of it is missed, however busy the computer is
     until_s = acquisition.now_s + seconds
-    qtbot.waitUntil(lambda: acquisition.now_s > until_s, timeout=10_000)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000) as ended:
+    qtbot.waitUntil(lambda: acquisition.now_s > until_s)
+    with qtbot.waitSignal(visit.recordings.ended) as ended:
         visit.recordings.stop()
     recording = ended.args[0]
     assert isinstance(recording, SessionRecording)

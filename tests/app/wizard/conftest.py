@@ -57,7 +57,7 @@ def untouched_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def controller(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterator[LibraryController]:
     controller = LibraryController()
     folder = shutil.copytree(untouched_library, tmp_path / "library")
-    with qtbot.waitSignal(controller.opened, timeout=20_000):
+    with qtbot.waitSignal(controller.opened):
         controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     yield controller
     controller.finish()
@@ -110,13 +110,13 @@ def worn() -> dict[str, Site]:
 def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     """Sensors, entered; files about another step have their own."""
     visit.patient.edit(Patient(code="DEMO-7"))
-    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+    with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 672)
     step.page.show()
-    with qtbot.waitSignal(visit.changed, timeout=5000):
+    with qtbot.waitSignal(visit.changed):
         step.enter()
     yield step
     step.leave()

@@ -15,8 +15,6 @@ from devices.live import SourceRefusedError
 from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
-WAIT_MS = 20_000
-
 
 def dot_choice(radio: FastRadio) -> SourceChoice:
     """What a search that received them offers."""
@@ -42,9 +40,9 @@ def has_asked_all(step: SensorsStep) -> bool:
 def open_dots(qtbot: QtBot, visit: Visit, step: SensorsStep, record_hz: int = 120) -> None:
     """Set them up as the page proposes, but for the walks' rate, and wear them one site after the other."""
     step.page.source_chosen.emit(DRIVER)
-    qtbot.waitUntil(lambda: has_asked_all(step), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: has_asked_all(step))
     step.page.dots.walks.setCurrentIndex(step.page.dots.walks.findData(record_hz))
-    with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.sensors.opened):
         press(step)
     assert visit.sensors.acquisition is not None
     visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=False)))

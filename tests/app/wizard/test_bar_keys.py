@@ -28,7 +28,6 @@ from core.session import Session
 
 TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "X": "Exclude"}
 KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "X": Qt.Key.Key_X}
-WAIT_MS = 60_000
 
 
 def watched(wizard: Wizard, number: StepId, monkeypatch: pytest.MonkeyPatch) -> list[str]:
@@ -128,13 +127,13 @@ def test_it_does_so_on_pages_that_are_full_of_results(
     wizard.show_session(opened.library.sessions.list()[0].id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy)
     for number in StepId:
         monkeypatch.setattr(type(wizard.steps[number]), "cannot_enter", "")
         wizard.go_to(number)
         pressed = watched(wizard, number, monkeypatch)
         assert misses(wizard, pressed) == [], wizard.steps[number].title
-    qtbot.waitUntil(lambda: visit.preview.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.preview.is_idle)
 
 
 def test_i_and_k_include_the_walk_just_stopped_x_and_d_exclude_it(

@@ -33,7 +33,6 @@ from core.body import LEG_SITES, Joint, Side, Site
 from tests.app.wizard.conftest import PASSPHRASE
 from tests.safety.wizard_kills import COMMENT, CONDITION, SPEED, Point
 
-WAIT_MS = 60_000
 LOST_S = 0.25  # of our time: as the journal promises at worst
 
 pytestmark = [
@@ -81,16 +80,16 @@ def start_again(
             qtbot.addWidget(widget)
             widget.resize(1280, 800)
         home.show()
-        with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        with qtbot.waitSignal(controller.opened):
             controller.open(lambda holder: holder.open(tmp_path / "library", PASSPHRASE))
         assert controller.state is not None
         home.show_library(controller.state)
         if controller.state.interrupted:
-            with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
+            with qtbot.waitSignal(home.recovering.recovered):
                 pass
         wizard.show()
         wizard.show_session(UUID(session))
-        qtbot.waitUntil(lambda: wizard.shell.page is not None, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: wizard.shell.page is not None)
         return home, wizard
 
     yield start
@@ -105,7 +104,7 @@ def visit_of(wizard: Wizard) -> Visit:
 
 def wait_for_place(qtbot: QtBot, wizard: Wizard, step: StepId) -> None:
     """Wait until the session that was taken up is at this step; what it holds may still be read."""
-    qtbot.waitUntil(lambda: wizard.current is not None and wizard.step_id == step, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.current is not None and wizard.step_id == step)
 
 
 def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
@@ -157,7 +156,7 @@ def placed(visit: Visit) -> Mapping[Site, PlacedSensor]:
 def page_notice(qtbot: QtBot, wizard: Wizard) -> str:
     step = wizard.current
     assert isinstance(step, WalkingStep)
-    qtbot.waitUntil(lambda: bool(step.page.notice.text), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(step.page.notice.text))
     return step.page.notice.text
 
 
@@ -175,9 +174,9 @@ def test_before_a_walk_was_kept_or_discarded(
     assert isinstance(step, WalkingStep)
     assert (step.state, step.note) == (StepState.ATTENTION, "include or exclude?")
     step.page.keep_pressed.emit(str(visit.recordings.walks[0].id))
-    qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided)
     wizard.show_session(UUID(reported["session"]))
-    qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None)
     wait_for_place(qtbot, wizard, StepId.RESULTS)
 
 
@@ -189,7 +188,7 @@ def check_corrections(qtbot: QtBot, wizard: Wizard, reported: dict[str, Any]) ->
     assert (first.details.condition, dict(first.details.left_out_s)) == (CONDITION, {Side.LEFT: (4.0,)})
     assert (first.details.is_kept, second.details.is_kept) == (True, False)
     assert visit.details.turned_sign == {Joint.LEFT_KNEE: -1}
-    qtbot.waitUntil(lambda: visit.evaluation.analysis is not None and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.evaluation.analysis is not None and not visit.evaluation.is_busy)
     assert visit.evaluation.session is not None
     assert visit.evaluation.session.turned_sign == {Joint.LEFT_KNEE: -1}
     walks = [recording.name for recording in visit.evaluation.session.recordings if recording.name.startswith("walk")]
@@ -204,7 +203,7 @@ def test_amid_the_results(qtbot: QtBot, start_again: Start, untouched_library: P
     check_corrections(qtbot, wizard, reported)
     step = wizard.current
     assert isinstance(step, ResultsStep)
-    qtbot.waitUntil(lambda: step.note == "1 included" and step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.note == "1 included" and step.state is StepState.DONE)
 
 
 @pytest.mark.parametrize("point", [Point.REPORT, Point.SAVING])
@@ -222,8 +221,8 @@ def test_amid_the_report(
     step = wizard.current
     assert isinstance(step, ReportStep)
     assert step.page.report.comment.toPlainText() == COMMENT
-    qtbot.waitUntil(step.can_save, timeout=WAIT_MS)
+    qtbot.waitUntil(step.can_save)
     step.save_in(str(out))
-    qtbot.waitUntil(lambda: step.exported == out, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported == out)
     (report,) = out.glob("*.pdf")
     assert report.read_bytes().startswith(b"%PDF")

@@ -32,7 +32,6 @@ from tests.app.library_answers import asked
 from tests.app.wizard.begun_visit import begin, record
 
 BUSY = LibraryBusyError("Another program is using the library", "Wait a moment")
-WAIT_MS = 20_000
 
 
 @pytest.fixture
@@ -42,7 +41,7 @@ def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: py
     begin(qtbot, visit, worn)
     yield visit
     if visit.recordings.is_recording:
-        with qtbot.waitSignal(visit.recordings.ended, timeout=WAIT_MS):
+        with qtbot.waitSignal(visit.recordings.ended):
             visit.recordings.stop()
 
 
@@ -79,11 +78,11 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
     monkeypatch.setattr(
         SharedEdits, "decision", failing(1, LibraryError("Changed meanwhile", "ThemeNotifier"), SharedEdits.decision)
     )
-    with qtbot.waitSignals([recordings.refused, recordings.begun], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.refused, recordings.begun]):
         recordings.keep(walk, is_kept=False)
         recordings.begin(acquisition, RecordingKind.WALKING)
     assert recordings.is_recording
-    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.ended):
         recordings.stop()
     assert [recording.details.name for recording in recordings.walks] == ["walk 1", "walk 2"]
 
@@ -110,12 +109,12 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     assert acquisition is not None
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 1)
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
-    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.begun):
         recordings.begin(acquisition, RecordingKind.WALKING)
     reported: list[tuple[str, str]] = []
     recordings.refused.connect(lambda *words: reported.append(words))
     recordings.stop()
-    qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: recordings.is_idle)
     assert "next starts" in reported[-1][1]  # what was written, or the whole: the disk may be done by then
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()  # it has been, at once
@@ -127,14 +126,14 @@ def test_a_full_disk_ends_the_recording_on_the_screen_too(
 ) -> None:
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.begun):
         recordings.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(recordings.troubled) as reported:
         threading.Thread(target=recordings.meet, args=(trouble,)).start()  # as the journal's writer reports it
     assert all(sentence.endswith(".") for sentence in reported.args)
     assert recordings.is_stopping is ends
     if ends:
-        qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: not recordings.is_recording)
         assert len(recordings.walks) == 1
 
 
@@ -147,13 +146,13 @@ def test_what_is_stated_of_a_late_disk_follows_its_counters(
     step = WalkingStep(looked_at)
     qtbot.addWidget(step.page)
     step.enter()
-    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.begun):
         recordings.begin(acquisition, RecordingKind.WALKING)
     assert recordings._latest is not None
     fine = recordings._latest.status
     now = [replace(fine, stuck_s=3.0)]
     monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
-    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(recordings.troubled) as reported:
         recordings.meet(Trouble.DISK_SLOW)
     assert reported.args == [
         "The disk responds slowly.",
@@ -180,7 +179,7 @@ def test_what_is_stated_of_a_late_disk_follows_its_counters(
     assert recording is not None
     assert "Saved continuously." in recording.note
     step.leave()
-    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.ended):
         recordings.stop()
     step.deleteLater()
 
@@ -220,7 +219,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     monkeypatch.setattr(Recorder, "begin", refused_once)
     step = FreeMotionStep(looked_at)
     qtbot.addWidget(step.page)
-    with qtbot.waitSignal(looked_at.recordings.refused, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.refused):
         step.enter()
     for _ in range(30):
         step.tick()
@@ -229,9 +228,9 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     primary = step.bar().primary
     assert primary is not None
     assert primary.text == "Start free motion"
-    with qtbot.waitSignal(looked_at.recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.begun):
         step.on_intent(Intent(KeyAction.RUN))
-    with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.ended):
         step.leave()
 
 
@@ -247,7 +246,7 @@ def test_a_step_that_was_left_before_it_began_leaves_the_samples_to_the_next(
     step.enter()
     if not looked_at.recordings.is_recording:  # a free motion begins by itself
         step.on_intent(Intent(KeyAction.RUN))
-    with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.ended):
         step.leave()
         monkeypatch.setattr(acquisition, "set_estimator", watching.append)
     assert watching == []
@@ -278,7 +277,7 @@ def test_strapping_again_before_what_does_not_count_is_reported_of_what_does(qtb
     discarded = record(qtbot, looked_at, RecordingKind.STANDING, 0.5)
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
     recordings.keep(discarded, is_kept=False)
-    qtbot.waitUntil(lambda: len(recordings.counted()) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(recordings.counted()) == 2)
     assert [recording.is_restrapped_before for recording in recordings.counted()] == [False, True]
 
 
@@ -302,10 +301,10 @@ def test_who_skips_the_free_motion_is_reported_its_price(qtbot: QtBot, looked_at
 
 def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryController, looked_at: Visit) -> None:
     looked_at.recordings.keep(record(qtbot, looked_at, RecordingKind.WALKING, 1.0), is_kept=True)
-    qtbot.waitUntil(lambda: looked_at.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: looked_at.recordings.walks[0].stored.is_decided)
     assert looked_at.session is not None
     again = Visit(controller, [])
-    with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
+    with qtbot.waitSignal(again.resumed):
         again.resume(looked_at.session.id)
     step = WalkingStep(again)
     qtbot.addWidget(step.page)
@@ -321,7 +320,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     step.tick()
     assert "was recovered, up to the last data on disk" in step.page.notice.text
     step.page.discard_pressed.emit(str(walk.id))
-    qtbot.waitUntil(lambda: not again.recordings.walks[0].details.is_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not again.recordings.walks[0].details.is_kept)
     step.leave()
     again.finish()
 
@@ -334,11 +333,11 @@ def test_sensors_of_another_day_were_strapped_again(
     assert looked_at.session is not None
     monkeypatch.setattr("app.wizard.visit.current_time", lambda: "2031-02-03T09:00:00+01:00")
     again = Visit(controller, looked_at.known_choices)
-    with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
+    with qtbot.waitSignal(again.resumed):
         again.resume(looked_at.session.id)
     assert again.recordings.has_moved
     looked_at.sensors.close()
-    with qtbot.waitSignal(again.refused, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(again.refused) as reported:
         again.sensors.search(again.choices[0])
     assert "another day" in reported.args[0]
     assert again.recordings.must_move
@@ -352,13 +351,13 @@ def test_a_session_stays_its_patients(qtbot: QtBot, visit: Visit, worn: dict[str
     visit.recordings.session = visit.session
     for code, is_taken in (("DEMO-8", True), ("P-8", False)):
         visit.patient.edit(replace(visit.patient.details, code=code))
-        with qtbot.waitSignals([visit.patient.changed if is_taken else visit.patient.refused], timeout=WAIT_MS):
+        with qtbot.waitSignals([visit.patient.changed if is_taken else visit.patient.refused]):
             visit.patient.commit()
     assert visit.patient.details.code == "DEMO-8"  # corrected; what is simulated becomes nobody's who is not
     assert visit.patient.stored is not None
     assert visit.session is not None
     assert visit.patient.stored.id == visit.session.patient_id
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
@@ -370,7 +369,7 @@ def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
     demo = library.patients.find("DEMO-98")
     assert demo is not None
     visit.patient.choose(demo)
-    with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.changed):
         visit.record.begin()
     visit.patient.edit(Patient(code="DEMO-99", birth_year=1990))
     with qtbot.waitSignal(visit.patient.refused) as refused:
@@ -383,7 +382,7 @@ def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
 def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Visit) -> None:
     for code in ("demo-5", "DEMO-5"):
         visit.patient.edit(Patient(code=code))
-        with qtbot.waitSignal(visit.patient.changed, timeout=WAIT_MS):
+        with qtbot.waitSignal(visit.patient.changed):
             visit.patient.commit()
     assert visit.patient.stored is not None
     assert visit.patient.stored.details.code == "DEMO-5"
@@ -392,7 +391,7 @@ def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Vis
 def test_a_session_that_is_gone_leads_back_and_states_so(
     qtbot: QtBot, wizard: Wizard, controller: LibraryController
 ) -> None:
-    with qtbot.waitSignals([wizard.left, controller.refused], timeout=WAIT_MS):
+    with qtbot.waitSignals([wizard.left, controller.refused]):
         wizard.show_session(uuid4())
     assert wizard.visit is None
 
@@ -408,7 +407,7 @@ def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
     assert wizard.visit is not None
     before = wizard.visit
     wizard.begin(None)
-    with qtbot.waitSignal(before.resumed, timeout=WAIT_MS):
+    with qtbot.waitSignal(before.resumed):
         pass
     assert wizard.current is not wizard.steps[StepId.RESULTS]
     assert wizard.visit.session is None

@@ -25,8 +25,6 @@ from core.calibration.rest import rest_of
 from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
-WAIT_MS = 20_000
-
 
 @pytest.fixture
 def left(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
@@ -51,7 +49,7 @@ def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> StepId:
     """Open the session that was left as Home does, and say at which step that is."""
     assert left.session is not None
     wizard.show_session(left.session.id)
-    qtbot.waitUntil(lambda: wizard.current is not None and wizard.shell.page is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.current is not None and wizard.shell.page is not None)
     assert wizard.current is not None
     return wizard.step_id
 
@@ -62,7 +60,7 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
     walk = record(qtbot, left, RecordingKind.WALKING, 0.5)
     assert landed(qtbot, wizard, left) == StepId.WALKING  # nobody has stated yet whether it is kept
     left.recordings.keep(walk, is_kept=True)
-    qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided)
     assert landed(qtbot, wizard, left) == StepId.RESULTS
     assert left.controller.state is not None
     library = left.controller.state.library.library
@@ -105,7 +103,7 @@ def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_or
     record(qtbot, left, RecordingKind.WALKING, 0.5)
     assert left.session is not None
     again = Visit(left.controller, [])
-    with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
+    with qtbot.waitSignal(again.resumed):
         again.resume(left.session.id)
     assert [recording.details.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
     again.finish()

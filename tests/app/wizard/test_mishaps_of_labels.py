@@ -30,7 +30,7 @@ def swap_thighs(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
     """On the page Sensors, as a user does."""
     step.enter()
     visit.sensors.assign(visit.sensors.sensor_at[Site.LEFT_THIGH], Site.RIGHT_THIGH)
-    with qtbot.waitSignal(visit.changed, timeout=10_000):
+    with qtbot.waitSignal(visit.changed):
         step.leave()
 
 
@@ -46,7 +46,7 @@ def test_labels_that_were_swapped_are_put_right_in_all_recordings(
     for kind in (RecordingKind.STANDING, RecordingKind.WALKING):
         record(qtbot, visit, kind, 0.5)
     swap_thighs(qtbot, visit, sensors_step)
-    qtbot.waitUntil(lambda: left_thighs(visit) == ["DEMO-right_thigh"] * 2, timeout=10_000)
+    qtbot.waitUntil(lambda: left_thighs(visit) == ["DEMO-right_thigh"] * 2)
 
 
 def test_sensors_that_were_strapped_on_otherwise_leave_what_was_recorded_before(
@@ -58,6 +58,6 @@ def test_sensors_that_were_strapped_on_otherwise_leave_what_was_recorded_before(
     record(qtbot, visit, RecordingKind.STANDING, 0.5)
     assert left_thighs(visit) == ["DEMO-left_thigh", "DEMO-right_thigh"]
     swap_thighs(qtbot, visit, sensors_step)  # it was stated wrongly: put right since the strapping, not before
-    qtbot.waitUntil(lambda: left_thighs(visit) == ["DEMO-left_thigh"] * 2, timeout=10_000)
+    qtbot.waitUntil(lambda: left_thighs(visit) == ["DEMO-left_thigh"] * 2)
     record(qtbot, visit, RecordingKind.STANDING, 0.5)
     assert left_thighs(visit) == ["DEMO-left_thigh"] * 3

@@ -27,16 +27,16 @@ def test_a_foot_without_ankle_is_called_foot_against_shank(
     limits = Limits(without_ankle=frozenset({Side.RIGHT}))
     if not is_reported_late:
         visit.record.set_limits(limits)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         record(qtbot, visit, RecordingKind.WALKING, 4.0)
     if is_reported_late:
         assert STATED not in stated(visit)
-        with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+        with qtbot.waitSignal(visit.evaluation.done):
             visit.record.set_limits(limits)
     assert STATED in stated(visit)
     assert visit.session is not None
     again = Visit(controller, [])
-    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=20_000):
+    with qtbot.waitSignals([again.resumed, again.evaluation.done]):
         again.resume(visit.session.id)
     assert STATED in stated(again)
     again.close()

@@ -64,7 +64,7 @@ def test_new_places_of_the_same_sensors_are_stated_and_a_sign_turned_by_hand_is_
         visit.record.set_turned(joint, -1)
     visit.sensors.assign(visit.sensors.sensor_at[THIGH], Site.RIGHT_THIGH)
     reported = QSignalSpy(calibrated.reported)
-    with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
+    with qtbot.waitSignal(visit.worn.corrected):
         calibrated.leave()
     assert reported.at(0)[0] == "Sensor positions changed. Standing reference and calibration are calculated again."
     assert not visit.recordings.is_restrapped
@@ -89,7 +89,7 @@ def test_a_sensor_that_was_taken_off_leaves_what_was_found_of_the_others(
 ) -> None:
     visit.sensors.assign(visit.sensors.sensor_at[Site.LEFT_FOOT], None)
     reported = QSignalSpy(calibrated.reported)
-    with qtbot.waitSignal(visit.changed, timeout=10_000):
+    with qtbot.waitSignal(visit.changed):
         calibrated.leave()
     assert reported.count() == 0
     assert not visit.recordings.must_move
@@ -106,7 +106,7 @@ def test_sides_that_are_swapped_are_swapped_for_what_is_recorded_next(
     qtbot: QtBot, visit: Visit, calibrated: SensorsStep
 ) -> None:
     left = visit.sensors.sensor_at[THIGH]
-    with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
+    with qtbot.waitSignal(visit.worn.corrected):
         visit.worn.swap_sides()
     assert visit.sensors.site_of[left] is Site.RIGHT_THIGH
     walk = record(qtbot, visit, RecordingKind.WALKING, 0.5)

@@ -15,7 +15,6 @@ from core.session import Patient, Session
 from devices.simulation.replay import ReplaySource
 from tests.app.watchdog import Watchdog
 
-WAIT_MS = 60_000
 LOOK_MS = 700  # at each page
 
 
@@ -29,7 +28,7 @@ def preparing(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> Wizard:
 
 def test_all_pages_are_made_while_the_first_is_looked_at(qtbot: QtBot, preparing: Wizard) -> None:
     preparing.begin(None)
-    qtbot.waitUntil(lambda: not preparing.to_prepare, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not preparing.to_prepare)
     made = preparing.shell.pages
     assert set(made) == set(StepId)
     assert preparing.shell.page is made[StepId.PATIENT]
@@ -57,29 +56,29 @@ def test_a_whole_session_never_holds_up_the_screen(
     wizard.begin(None)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: not wizard.to_prepare, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not wizard.to_prepare)
     visit.patient.edit(Patient(code="DEMO-9"))
     visit.patient.commit()
-    qtbot.waitUntil(lambda: visit.patient.stored is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.patient.stored is not None)
     wizard.go_to(StepId.SENSORS)
-    qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.session is not None)
     visit.sensors.search(visit.choices[0])
-    qtbot.waitUntil(lambda: bool(visit.sensors.status), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(visit.sensors.status))
     visit.sensors.assign_all(dict(zip(visit.sensors.status, LEG_SITES, strict=True)))
     qtbot.wait(LOOK_MS)
     wizard.go_to(StepId.STAND_STILL)
     qtbot.wait(LOOK_MS)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING)
     qtbot.wait(LOOK_MS)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.is_recording, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.is_recording)
     qtbot.wait(12_000)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: bool(visit.recordings.walks) and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(visit.recordings.walks) and not visit.evaluation.is_busy)
     visit.recordings.keep(visit.recordings.walks[-1], True)
     for step in (StepId.RESULTS, StepId.REPORT, StepId.PATIENT):
         wizard.go_to(step)
         qtbot.wait(3 * LOOK_MS)
-    qtbot.waitUntil(lambda: visit.preview.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.preview.is_idle)

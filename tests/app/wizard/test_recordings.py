@@ -19,7 +19,6 @@ from core.body import LEG_SITES, Side, Site
 from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
-WAIT_MS = 20_000
 FAULT = LibraryFaultError("The library file cannot be read or written", "Check the disk")
 
 
@@ -51,11 +50,11 @@ def test_no_call_of_the_library_holds_up_a_recording(
     try:
         for _ in range(2):
             asked_s = time.monotonic()
-            with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+            with qtbot.waitSignal(recordings.begun):
                 recordings.begin(acquisition, RecordingKind.WALKING)
             assert time.monotonic() - asked_s < ROW_WAIT_S + 3.0  # on a busy machine; alone it is a second
             recordings.stop()
-            qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
+            qtbot.waitUntil(lambda: not recordings.is_recording)
             assert acquisition._writer is None
         assert ended == []
         assert [what for what, _ in reported] == [
@@ -66,7 +65,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
         assert ["safe on the disk" in then for _, then in reported] == [False, True] * 2
     finally:
         over.set()
-    qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: recordings.is_idle)
     assert [recording.details.name for recording in ended] == ["walk 1", "walk 2"]
     assert [recording.stored.state for recording in ended] == [RecordingState.CLOSED] * 2
     for recording in ended:
@@ -93,14 +92,14 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
     recordings, acquisition = visit.recordings, visit.sensors.acquisition
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 50)
     assert acquisition is not None
-    with qtbot.waitSignals([recordings.begun, recordings.troubled], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.begun, recordings.troubled]):
         recordings.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(recordings.refused) as reported:
         recordings.stop()
     assert reported.args == [f"{FAULT.what}.", "The recording is safe on the disk. It is loaded as soon as possible."]
     assert not recordings.is_recording
     is_broken[0] = False
-    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS) as ended:
+    with qtbot.waitSignal(recordings.ended) as ended:
         pass
     assert ended.args[0].details.name == "walk 1"
 
@@ -119,9 +118,9 @@ def test_the_name_of_one_that_could_not_be_read_back_is_not_given_again(
     monkeypatch.setattr("app.wizard.reading_back.MOST_READINGS", 1)
     with monkeypatch.context() as broken:
         broken.setattr(Recorder, "stop", unreadable)
-        with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+        with qtbot.waitSignal(recordings.begun):
             recordings.begin(acquisition, RecordingKind.WALKING)
-        with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS):
+        with qtbot.waitSignal(recordings.refused):
             recordings.stop()
     assert recordings.is_idle
     assert record(qtbot, visit, RecordingKind.WALKING, 0.5).details.name == "walk 2"
@@ -136,7 +135,7 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     recordings.change(walk, lambda reported: replace(reported, condition="barefoot"))
     recordings.change(walk, lambda reported: replace(reported, left_out_s={Side.LEFT: (4.0,)}))
     recordings.keep(walk, is_kept=False)
-    qtbot.waitUntil(lambda: not recordings.walks[0].details.is_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not recordings.walks[0].details.is_kept)
     reported = recordings.walks[0].details
     assert (reported.condition, dict(reported.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
     for is_kept in (True, False):
@@ -159,7 +158,7 @@ def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: di
     recordings.stop(is_kept=False)  # before it has begun
     assert recordings.is_stopping
     recordings.stop()  # who reports it once more does not say that it counts
-    qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept)
     assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)
     assert recordings.standing is not None
@@ -171,9 +170,9 @@ def test_a_walk_that_ends_with_the_window_waits_to_be_kept_or_discarded(
     begin(qtbot, visit, worn)
     recordings, acquisition = visit.recordings, visit.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.begun):
         recordings.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(recordings.ended):
         visit.close()
     assert controller.state is not None
     (walk,) = controller.state.library.library.recordings.undecided()

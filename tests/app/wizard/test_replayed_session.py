@@ -21,7 +21,6 @@ from tests.simulated import analysis_of, session_of
 from tests.trials_of_files import import_with
 
 pytestmark = pytest.mark.endurance  # as long as the patients take, a minute or two each
-WAIT_MS = 60_000
 BONES = {"femur": "thigh", "tibia": "shank", "calcn": "foot"}
 
 
@@ -31,12 +30,12 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
     visit = wizard.visit
     assert visit is not None
     visit.patient.edit(Patient(code="DEMO-8"))
-    with qtbot.waitSignal(visit.patient.changed, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     wizard.go_to(StepId.SENSORS)
     sensors = wizard.current
     assert isinstance(sensors, SensorsStep)
-    with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.sensors.opened):
         sensors.stored.replay_folder(folder)
     assert set(visit.sensors.sensor_at) == set(LEG_SITES)
     wizard.press_primary()
@@ -46,10 +45,10 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
 def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
     visit = wizard.visit
     assert visit is not None
-    with qtbot.waitSignal(visit.recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         wizard.press_primary()
     qtbot.wait(round(1000 * seconds))
-    with qtbot.waitSignal(visit.recordings.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         wizard.press_primary()
 
 
@@ -57,7 +56,7 @@ def results(qtbot: QtBot, wizard: Wizard) -> Analysis:
     visit = wizard.visit
     assert visit is not None
     wizard.go_to(StepId.RESULTS)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy and visit.evaluation.analysis is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy and visit.evaluation.analysis is not None)
     analysis = visit.evaluation.analysis
     assert analysis is not None
     assert analysis.is_simulated, "nobody was measured now"
@@ -76,11 +75,11 @@ def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, w
     write_session(session_of(DEMONSTRATION), folder)
     lead_to_standing(qtbot, wizard, folder)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION)
     qtbot.wait(30_000)
     if wizard.step_id is StepId.FREE_MOTION:
         wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING)
     record_walk(qtbot, wizard, 20.0)
     analysis, stored = results(qtbot, wizard), analysis_of(read_session(folder))
     visit = wizard.visit
@@ -106,7 +105,7 @@ def test_a_real_walk_without_standing_goes_as_far(
     wizard.go_to(StepId.FREE_MOTION)
     qtbot.wait(12_000)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING)
     record_walk(qtbot, wizard, 24.0)
     analysis = results(qtbot, wizard)
     visit = wizard.visit

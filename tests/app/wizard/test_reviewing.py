@@ -12,8 +12,6 @@ from app.wizard import reviewing
 from app.wizard.reviewing import Reviewing
 from tests.app.review.test_viewer import EMPTY, stand_in, wait_for
 
-WAIT_MS = 20_000
-
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the stand-in for the viewer is a script")
 
 
@@ -33,7 +31,7 @@ def test_a_viewer_that_closes_at_once_is_stated_with_its_reason(
     qtbot: QtBot, review: Reviewing, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reviewing, "viewer_program", lambda: stand_in(tmp_path, ends=True)[0])
-    with qtbot.waitSignal(review.refused, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(review.refused) as reported:
         review.show(*EMPTY)
     reason = "no screen at \N{HORIZONTAL ELLIPSIS} Failed to open"
     assert reported.args[0] == f"Rerun closed with an error: {reason}."

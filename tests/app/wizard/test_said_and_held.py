@@ -23,7 +23,6 @@ from core.session import Session
 from tests.safety.random_keys import play
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
 
-WAIT_MS = 20_000
 Alter = Callable[[str], None]
 
 
@@ -61,7 +60,7 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
     wizard.show_session(line.id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy)
     wizard.go_to(StepId.WALKING)
     return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, wizard=wizard)
 
@@ -74,7 +73,7 @@ def home_in_sight(
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show_library(controller.state)
-    qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines))
     return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, wizard=None)
 
 

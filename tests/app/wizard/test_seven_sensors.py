@@ -88,9 +88,9 @@ def recorded(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
     for seconds in (12.0, 13.0):
-        with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        with qtbot.waitSignal(visit.evaluation.done):
             record(qtbot, visit, RecordingKind.FREE_MOTION, seconds)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         record(qtbot, visit, RecordingKind.WALKING, 24.0)
 
 
@@ -107,7 +107,7 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
         assert recording.read_back is not None
         assert set(recording.read_back.imu) == set(Site)
     again = Visit(controller, [])
-    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
+    with qtbot.waitSignals([again.resumed, again.evaluation.done]):
         again.resume(visit.session.id)
     assert set(again.rests) == set(worn)
     assert set(again.evaluation.hips) == HIPS
@@ -115,7 +115,7 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
     assert one is not None
     assert other is not None
     assert packed(one) == packed(other)
-    with qtbot.waitSignal(again.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(again.evaluation.done):
         again.worn.swap_sides()
     placement = again.recordings.walks[-1].stored.placement
     assert placement is not None
@@ -166,7 +166,7 @@ def looked(qtbot: QtBot, visit: Visit) -> Iterator[list[Looked]]:
     yield steps
     for one in steps:
         one.end()
-    qtbot.waitUntil(lambda: visit.recordings.is_idle, timeout=20_000)
+    qtbot.waitUntil(lambda: visit.recordings.is_idle)
     for one in steps:
         one.step.deleteLater()
 
@@ -177,31 +177,31 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
 ) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         record(qtbot, visit, RecordingKind.FREE_MOTION, 12.0)
     step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     page = step.page
     assert page.charts.hip.isVisible() is False  # the walks stand there until one is recorded
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun):
         press(step)
-    qtbot.waitUntil(lambda: set(page.live.hips) == set(Side), timeout=20_000)
+    qtbot.waitUntil(lambda: set(page.live.hips) == set(Side))
     assert page.charts.hip.isVisible()
     assert page.live.hips[Side.LEFT].is_provisional
-    qtbot.waitUntil(lambda: not any(one.is_provisional for one in page.live.hips.values()), timeout=30_000)
+    qtbot.waitUntil(lambda: not any(one.is_provisional for one in page.live.hips.values()))
     hip_deg = np.rad2deg(page.live.hips[Side.LEFT].angle_rad[-300:])
     assert np.nanmax(hip_deg) - np.nanmin(hip_deg) > 25.0
     pelvis = visit.sensors.sensor_at[Site.PELVIS]
     source.silence(pelvis)
-    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: no signal for"), timeout=20_000)
+    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: no signal for"))
     assert "Recording continues, including knees and ankles" in page.notice.text
     assert page.live.missing == (Site.PELVIS,)
     assert page.live.now_s - page.live.knees[Side.LEFT].time_s[-1] < 1.0
     assert page.live.now_s - page.live.hips[Side.LEFT].time_s[-1] > 1.0
     source.wake(pelvis)
-    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: signal back"), timeout=20_000)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=20_000):
+    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: signal back"))
+    with qtbot.waitSignal(visit.recordings.ended):
         press(step)
     walk = visit.recordings.walks[-1]
     assert walk.read_back is not None
@@ -218,7 +218,7 @@ def test_live_gauges_of_hips_close_and_never_hold_up_the_free_motion(
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     assert all(hip.isVisible() for hip in step.page.hips.values())
-    qtbot.waitUntil(lambda: all(hip.face.is_met for hip in step.page.hips.values()), timeout=30_000)
+    qtbot.waitUntil(lambda: all(hip.face.is_met for hip in step.page.hips.values()))
 
 
 @pytest.mark.endurance
@@ -230,7 +230,7 @@ def test_live_free_motion_ends_though_the_hips_are_open(
     source.ask(RecordingKind.FREE_MOTION)  # the lunges: the circling legs come next
     step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
-    with qtbot.waitSignal(step.done, timeout=60_000):
+    with qtbot.waitSignal(step.done):
         looked.append(Looked(step))
     assert not any(hip.face.is_met for hip in step.page.hips.values())
 
@@ -244,7 +244,7 @@ def test_live_standing_does_not_wait_for_a_silent_pelvis(
     step = StandStillStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
-    with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
+    with qtbot.waitSignal(visit.recordings.ended):
         press(step)
     assert set(visit.rests) == set(worn) - {"DEMO-pelvis"}
 
@@ -264,5 +264,5 @@ def test_live_motion_shows_who_wears_the_pelvis(
     step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
-    qtbot.waitUntil(lambda: bool(visit.sensors.site_of), timeout=60_000)
+    qtbot.waitUntil(lambda: bool(visit.sensors.site_of))
     assert visit.sensors.site_of == worn

@@ -189,7 +189,7 @@ def test_the_page_that_was_there_fades_and_leaves_nothing(qtbot: QtBot) -> None:
     shell.show()
     shell.show_page(StepId.PATIENT, Page())
     shell.show_page(StepId.SENSORS, Page())
-    qtbot.waitUntil(lambda: not shell._fade.isVisible(), timeout=2000)
+    qtbot.waitUntil(lambda: not shell._fade.isVisible())
 
 
 def test_tab_goes_through_the_page_in_its_own_order_and_then_to_the_bar(shell: WizardShell) -> None:
@@ -258,11 +258,11 @@ def test_the_folded_strip_opens_by_itself_when_a_sensor_turns_bad_and_only_then(
 ) -> None:
     shell.set_strip_mode(StripMode.FOLDED)
     shell.strip.show_tiles(fine() | {Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=3.4)})
-    qtbot.waitUntil(shell.strip.isVisible, timeout=2000)
+    qtbot.waitUntil(shell.strip.isVisible)
     assert shell.header.fold.text() == "R foot: no signal 3 s"
     shell.header.fold.setChecked(False)
     shell.strip.show_tiles(fine() | {Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=4.4)})
-    qtbot.waitUntil(lambda: shell.header.fold.text() == "R foot: no signal 4 s", timeout=2000)
+    qtbot.waitUntil(lambda: shell.header.fold.text() == "R foot: no signal 4 s")
     assert not shell.strip.isVisible()
 
 

@@ -51,7 +51,7 @@ def test_it_is_stated_whom_it_asks_and_asked_when_it_is_chosen_once_more(
     assert WARNING in stated(step)
     assert "Choose the source again to start the query." in stated(step)
     assert (asked, visit.sensors.is_searching) == ([], False)
-    with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
+    with qtbot.waitSignal(visit.refused) as refused:
         step.page.source_chosen.emit(NETWORK)
     assert asked == ["192.0.2.9"]
     assert refused.args[0] == "No stream with motion data found."
@@ -63,7 +63,7 @@ def test_another_choice_takes_it_back(
     qtbot: QtBot, visit: Visit, step: SensorsStep, asked: list[str], other: str
 ) -> None:
     step.page.source_chosen.emit(NETWORK)
-    with qtbot.waitSignal(visit.refused, timeout=5000):
+    with qtbot.waitSignal(visit.refused):
         step.page.source_chosen.emit(other)
     assert WARNING not in stated(step)
     step.page.source_chosen.emit(NETWORK)

@@ -30,7 +30,6 @@ from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import asked
 from tests.app.wizard.conftest import PASSPHRASE
 
-WAIT_MS = 20_000
 REPORTED = Patient("DEMO-9", 1966, height_m=1.68, aids="stick")
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="shoes")
 WORN = {Site.LEFT_THIGH: PlacedSensor("A", SensorInfo()), Site.RIGHT_THIGH: PlacedSensor("B", SensorInfo())}
@@ -94,7 +93,7 @@ def ours(qtbot: QtBot, wizard: Wizard, other: OtherStation) -> Visit:
     wizard.show_session(other.session_id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.session is not None)
     stored = other.library.recordings.find(other.walk_id)
     assert stored is not None
     assert visit.session is not None
@@ -115,7 +114,7 @@ class Ear:
 
 
 def dialog_of(qtbot: QtBot, wizard: Wizard) -> EditDialog:
-    qtbot.waitUntil(lambda: wizard.asked.dialog is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.asked.dialog is not None)
     assert wizard.asked.dialog is not None
     return wizard.asked.dialog
 
@@ -127,7 +126,7 @@ def answer(dialog: EditDialog, *keys: Qt.Key) -> None:
 
 def settle(qtbot: QtBot, visit: Visit, other: OtherStation, is_so: Callable[[], bool]) -> None:
     """Wait until the library holds it and nothing is asked any more."""
-    qtbot.waitUntil(lambda: is_so() and not visit.is_asking, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: is_so() and not visit.is_asking)
     other.refuse_broken_audit()
 
 
@@ -141,7 +140,7 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     other.library.patients.delete(other.library.patients.get(other.patient.id))
     for _ in range(3):  # as the watch has it done
         wizard.look_for_changes()
-    qtbot.waitUntil(lambda: bool(received), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(received))
     assert wizard.shell.banner.text.startswith("At another workstation, hk deleted DEMO-9.")
     other.library.patients.restore(other.library.patients.get(other.patient.id))
     visit = other.library.sessions.get(other.session_id)
@@ -149,7 +148,7 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     asked(qtbot, controller, lambda library: library.folder)  # after the look
     other.library.sessions.delete(visit)
     wizard.look_for_changes()
-    qtbot.waitUntil(lambda: len(received) > 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(received) > 1)
     assert {what for what, _ in received} == {"At another workstation, hk deleted DEMO-9."}
     other.refuse_broken_audit()
 
@@ -187,7 +186,7 @@ def test_other_fields_of_a_patient_are_merged_without_a_question_and_reported(
     other.say_of_patient(height_m=1.80)
     ours.patient.edit(replace(ours.patient.details, aids="frame"))
     ours.patient.commit()
-    qtbot.waitUntil(lambda: bool(ear.received), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(ear.received))
     (received,) = ear.received
     assert received.startswith(
         "Saved. DEMO-9 was also changed at another workstation. Height: 180 cm (H. Keller, today "
@@ -209,7 +208,7 @@ def test_what_nobody_else_changed_is_saved_without_a_word(
     ours.record.set_zero(Joint.LEFT_KNEE, 0.1)
     other_sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, ours, other, lambda: bool(other_sessions.get(session_id).details.zero_rad))
-    qtbot.waitUntil(lambda: ours.patient.is_saved, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: ours.patient.is_saved)
     assert ear.received == []
     assert wizard.asked.dialog is None
 
@@ -218,14 +217,14 @@ def test_going_on_from_the_patient_waits_for_the_answer(qtbot: QtBot, wizard: Wi
     wizard.begin(other.patient)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.patient.is_saved)
     other.say_of_patient(height_m=1.80)
     visit.patient.edit(replace(visit.patient.details, height_m=1.82))
     wizard.press_primary()
     dialog = dialog_of(qtbot, wizard)
     assert wizard.step_id is not StepId.SENSORS
     answer(dialog, Qt.Key.Key_Escape)
-    qtbot.waitUntil(lambda: wizard.step_id is StepId.SENSORS, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.SENSORS)
     assert other.reported.height_m == 1.80
 
 
@@ -241,11 +240,11 @@ def test_words_of_the_report_typed_at_both_stations_are_asked_about(
     report.editor.flush()
     dialog = dialog_of(qtbot, wizard)
     assert [cell.value for cell in dialog.cells[0]] == ["Keep alignment C.", "The left foot drags."]
-    qtbot.waitUntil(lambda: report.comment.toPlainText() == "The left foot drags.", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: report.comment.toPlainText() == "The left foot drags.")
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
     sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, ours, other, lambda: sessions.get(session_id).comment == "Keep alignment C.")
-    qtbot.waitUntil(lambda: report.comment.toPlainText() == "Keep alignment C.", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: report.comment.toPlainText() == "Keep alignment C.")
     assert ("comment", "", "The left foot drags.", False) in other.history()
 
 
@@ -263,7 +262,7 @@ def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_
     required = {Joint.LEFT_KNEE: -1, Joint.RIGHT_KNEE: -1}
     settle(qtbot, ours, other, lambda: sessions.get(session_id).details.turned_sign == required)
     assert sessions.get(session_id).details.zero_rad == {Joint.LEFT_ANKLE: np.deg2rad(5)}
-    qtbot.waitUntil(lambda: ours.details.turned_sign == required, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: ours.details.turned_sign == required)
 
 
 def test_a_limit_stated_here_does_not_take_back_one_stated_there(
@@ -287,7 +286,7 @@ def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_
     assert [cell.value for cell in dialog.cells[0]] == ["barefoot", "AFO"]
     other.say_of_walk({"condition": "stick"})
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: wizard.asked.dialog not in (None, dialog), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.asked.dialog not in (None, dialog))
     again = dialog_of(qtbot, wizard)
     assert [cell.value for cell in again.cells[0]] == ["barefoot", "stick"]
     answer(again, Qt.Key.Key_Left, Qt.Key.Key_Return)
@@ -300,12 +299,12 @@ def test_strides_left_out_at_both_stations_are_all_left_out(qtbot: QtBot, ours: 
     (walk,) = ours.recordings.walks
     ours.recordings.change(walk, lambda reported: replace(reported, left_out_s={Side.LEFT: (7.0,)}))
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {Side.LEFT: (4.0, 7.0)})
-    qtbot.waitUntil(lambda: bool(ear.received), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(ear.received))
     assert "Strides excluded, left: 2 strides: 4.0 s, 7.0 s" in ear.received[0]
     choice = StrideChoice(ours.recordings, ours)
     choice.take_all_in("walk 1")
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {})
-    qtbot.waitUntil(lambda: ours.recordings.walks[0].details.left_out_s == {}, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: ours.recordings.walks[0].details.left_out_s == {})
     assert other.walk.left_out_s == {}
 
 
@@ -336,7 +335,7 @@ def test_sides_swapped_at_both_stations_are_swapped_once_and_taken_back_once(
         stored = other.library.recordings.find(other.walk_id)
         return stored.placement.sensors if stored is not None and stored.placement is not None else None
 
-    with qtbot.waitSignal(ours.recordings.changed, timeout=WAIT_MS):
+    with qtbot.waitSignal(ours.recordings.changed):
         ours.worn.swap_sides()
     assert worn() == swapped
 
@@ -363,7 +362,7 @@ def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_as
     ours.patient.edit(replace(ours.patient.details, height_m=1.82))
     wizard.leave()  # which saves
     answer(dialog_of(qtbot, wizard), Qt.Key.Key_Left, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: other.reported.height_m == 1.82, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: other.reported.height_m == 1.82)
 
 
 def report_of(wizard: Wizard) -> ReportStep:
@@ -388,7 +387,7 @@ def test_words_of_the_report_saved_as_the_session_is_left_are_there_when_it_is_o
     assert visit is not None
     assert visit is not ours
     ear = Ear(visit)
-    qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.session is not None)
     assert visit.record.comment == "Keep alignment C."
     visit.record.set_turned(Joint.LEFT_KNEE, -1)
     sessions, session_id = other.library.sessions, other.session_id
@@ -402,7 +401,7 @@ def test_words_typed_after_a_refusal_are_nobody_elses(
     report = report_of(wizard).page.report
     with monkeypatch.context() as patched:
         patched.setattr(SharedEdits, "session", _refuse)
-        with qtbot.waitSignal(ours.record.refused, timeout=WAIT_MS):
+        with qtbot.waitSignal(ours.record.refused):
             report.comment.setPlainText("Keep")
             report.editor.flush()
     report.comment.setPlainText("Keep alignment C.")

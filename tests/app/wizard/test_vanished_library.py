@@ -30,8 +30,6 @@ from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
 
-WAIT_MS = 30_000
-
 
 @pytest.fixture(autouse=True)
 def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -51,7 +49,7 @@ def start_walk(qtbot: QtBot, visit: Visit) -> None:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(RecordingKind.WALKING)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         visit.recordings.begin(acquisition, RecordingKind.WALKING)
 
 
@@ -74,10 +72,10 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     qtbot.wait(200)
     stated: list[tuple[str, str]] = []
     recordings.troubled.connect(lambda *words: stated.append(words))
-    with qtbot.waitSignals([recordings.troubled, controller.gone], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.troubled, controller.gone]):
         folder.rename(elsewhere)
     assert recordings.is_recording
-    qtbot.waitUntil(lambda: len(stated) == 2, timeout=WAIT_MS)  # by the journal, and by who looks for the folder
+    qtbot.waitUntil(lambda: len(stated) == 2)  # by the journal, and by who looks for the folder
     assert controller.state is not None
     assert controller.state.library.shelter is not None
     assert all(str(controller.state.library.shelter.folder) in then for _, then in stated)
@@ -85,12 +83,12 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     refused: list[tuple[str, str]] = []
     recordings.refused.connect(lambda *words: refused.append(words))
     recordings.stop()
-    qtbot.waitUntil(lambda: bool(refused), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(refused))
     assert refused[0][0] == f"The library is no longer in {folder}."
     qtbot.wait(100)
     assert not recordings.is_idle
     assert not folder.exists()
-    with qtbot.waitSignals([recordings.ended, controller.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.ended, controller.back]):
         elsewhere.rename(folder)
     (walk,) = recordings.walks
     assert (walk.stored.state, len(walk.stored.journals)) == (RecordingState.CLOSED, 2)
@@ -105,19 +103,17 @@ def test_renamed_between_two_walks_the_next_begins_all_the_same(
 ) -> None:
     recordings, folder, elsewhere = looked_at.recordings, tmp_path / "library", tmp_path / "renamed"
     record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
-    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(recordings.troubled) as stated:
         start_walk(qtbot, looked_at)
     assert stated.args is not None
     assert stated.args[0] == "The library folder is no longer available; recording continues."
     qtbot.wait(200)
     recordings.stop()
-    qtbot.waitUntil(
-        lambda: recordings._reading_back._readings > 16, timeout=WAIT_MS
-    )  # more than it is patient with a busy library
+    qtbot.waitUntil(lambda: recordings._reading_back._readings > 16)  # more than it is patient with a busy library
     assert not recordings.is_idle
-    with qtbot.waitSignals([recordings.ended, controller.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.ended, controller.back]):
         elsewhere.rename(folder)
     assert [(recording.details.name, recording.stored.state) for recording in recordings.walks] == [
         ("walk 1", RecordingState.CLOSED),
@@ -163,10 +159,10 @@ def open_window(
 def log_in(qtbot: QtBot, window: MainWindow) -> None:
     assert window.entry is not None
     page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.isVisible() and page.operator.count() == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.isVisible() and page.operator.count() == 1)
     page.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: window.controller.state is not None and window.home is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.controller.state is not None and window.home is not None)
 
 
 def notice_of(wizard: Wizard) -> str:
@@ -196,11 +192,11 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     qtbot.wait(300)
     began_s = time.monotonic()
     folder.rename(elsewhere)
-    qtbot.waitUntil(lambda: "stored encrypted on this computer" in notice_of(wizard), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "stored encrypted on this computer" in notice_of(wizard))
     assert time.monotonic() - began_s < 2.0
     qtbot.wait(300)
     visit.recordings.stop()
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording)
     start_walk(qtbot, visit)
     qtbot.wait(300)
     window.close()  # amid the second walk, with the library gone
@@ -215,7 +211,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     log_in(qtbot, again)
     home = again.home
     assert home is not None
-    qtbot.waitUntil(lambda: "while the library was missing" in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "while the library was missing" in home.banner.text)
     assert again.controller.state is not None
     library = again.controller.state.library.library
     (line,) = library.sessions.list()

@@ -31,10 +31,10 @@ def test_whole_session_is_evaluated_and_stored(
 ) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         record(qtbot, visit, RecordingKind.FREE_MOTION, 14.0)
     assert set(visit.evaluation.calibration) == set(LEG_JOINTS)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         walk = record(qtbot, visit, RecordingKind.WALKING, 18.0, "barefoot")
     assert walk.details.condition == "barefoot"
     assert not walk.is_decided
@@ -46,7 +46,7 @@ def test_whole_session_is_evaluated_and_stored(
     again = Visit(controller, [])
     computed: list[object] = []
     again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
-    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
+    with qtbot.waitSignals([again.resumed, again.evaluation.done]):
         again.resume(stored.id)
     assert computed == []  # it was kept
     assert [recording.details.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
@@ -132,7 +132,7 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == required)
     qtbot.waitUntil(lambda: visit.patient.is_saved)
     again = Visit(controller, [])
-    with qtbot.waitSignal(again.resumed, timeout=10_000):
+    with qtbot.waitSignal(again.resumed):
         again.resume(session.id)
     assert again.without_ankle == {Side.LEFT, Side.RIGHT}
     step = StandStillStep(again)
@@ -185,7 +185,7 @@ def test_who_judged_a_recovered_walk_is_noted_once_for_all(
 
     def resumed() -> Visit:
         again = Visit(controller, [])
-        with qtbot.waitSignal(again.resumed, timeout=10_000):
+        with qtbot.waitSignal(again.resumed):
             again.resume(session.id)
         return again
 
@@ -225,7 +225,7 @@ def test_closing_in_mid_walk_loses_nothing(
     qtbot.wait(500)
     visit.close()
     again = Visit(controller, [])
-    with qtbot.waitSignal(again.resumed, timeout=10_000):
+    with qtbot.waitSignal(again.resumed):
         again.resume(session.id)
     (walk,) = again.recordings.walks
     assert walk.read_back is not None

@@ -79,10 +79,10 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     step.enter()
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun):
         press(step)
     step.tick()
     assert step.page.notice.text.startswith("No foot sensors: strides are counted after the walk.")
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended):
         press(step)
     step.leave()

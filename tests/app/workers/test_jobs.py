@@ -9,9 +9,8 @@ from PySide6.QtCore import QObject, Qt
 from pytestqt.qtbot import QtBot
 
 from app.workers.jobs import Job, JobThread
+from tests.waiting import PATIENCE_S
 from tests.wrappers import Wrappers
-
-WAIT_S = 20.0  # on a busy machine
 
 
 @pytest.fixture
@@ -30,7 +29,7 @@ class Asker(QObject):
         self.go_on = Event()
 
     def job(self) -> Job:
-        return Job(lambda: self.go_on.wait(WAIT_S), None, None, ref(self))
+        return Job(lambda: self.go_on.wait(PATIENCE_S), None, None, ref(self))
 
 
 def test_who_asked_and_was_closed_meanwhile_ends_on_the_screens_thread(
@@ -40,13 +39,13 @@ def test_who_asked_and_was_closed_meanwhile_ends_on_the_screens_thread(
     go_on, gone = asker.go_on, ref(asker)
     lane.reported.connect(lambda _job, outcome: reported_of.append(outcome), Qt.ConnectionType.QueuedConnection)
     # the answer reaches the screen before the thread has let the job go
-    lane.reported.connect(lambda _job, _outcome: is_reported.wait(WAIT_S), Qt.ConnectionType.DirectConnection)
+    lane.reported.connect(lambda _job, _outcome: is_reported.wait(PATIENCE_S), Qt.ConnectionType.DirectConnection)
     lane.ask(asker.job())
     del asker
     go_on.set()
-    qtbot.waitUntil(lambda: reported_of == [True], timeout=int(1000 * WAIT_S))
+    qtbot.waitUntil(lambda: reported_of == [True])
     is_reported.set()
-    qtbot.waitUntil(lambda: gone() is None, timeout=int(1000 * WAIT_S))
+    qtbot.waitUntil(lambda: gone() is None)
     assert wrappers.taken() == []
 
 
@@ -57,5 +56,5 @@ def test_a_job_is_kept_no_longer_than_until_its_thread_has_let_it_go(qtbot: QtBo
     lane.ask(second.job())
     first.go_on.set()
     del first
-    qtbot.waitUntil(lambda: gone() is None, timeout=int(1000 * WAIT_S))
+    qtbot.waitUntil(lambda: gone() is None)
     going_on.set()

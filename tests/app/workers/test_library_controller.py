@@ -31,7 +31,8 @@ from app.workers.library_state import Joined, LibraryPlace, OpenedState, Unlocke
 from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
 from core.session import Patient
-from tests.app.library_answers import WAIT_MS, Asker, asked, not_opened_by, opened, opened_by, opening
+from tests.app.library_answers import Asker, asked, not_opened_by, opened, opened_by, opening
+from tests.waiting import PATIENCE_S
 
 PASSPHRASE = "four short words here"
 
@@ -68,16 +69,16 @@ def test_the_passphrase_is_not_held_by_a_library_that_is_open(
 
     def let_go_of(passphrase: str) -> None:
         # the thread may be about to let go of it
-        qtbot.waitUntil(lambda text=passphrase: not is_held(text), timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        qtbot.waitUntil(lambda text=passphrase: not is_held(text))  # type: ignore[misc]  # pytest-qt's types
 
     for passphrase, signal in (("words of somebody else", controller.not_opened), (own, controller.opened)):
-        with qtbot.waitSignal(signal, timeout=WAIT_MS):
+        with qtbot.waitSignal(signal):
             controller.open(opening(folder, passphrase, "hk"))
         let_go_of(passphrase)
     asker = Asker()
     controller.lock()
     controller.call(unlocking(own), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
     let_go_of(own)
 
 
@@ -112,7 +113,7 @@ def test_calls_are_answered_in_order_on_the_screens_thread(
 
     for code in ("P-1", "P-2", "P-3"):
         controller.run(adding(code), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.results) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 3)
     assert asker.results == ["P-1", "P-2", "P-3"]
     assert asker.threads == {main_thread()}
     assert main_thread() not in worked_in
@@ -138,10 +139,10 @@ def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
         return len(library.library.patients.search())  # it is still open
 
     controller.record(begin, *asker.ears)
-    qtbot.waitUntil(lambda: asker.results == ["begun"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: asker.results == ["begun"])
     assert turns == [False]
     controller.record(end, *asker.ears)
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.close()
         slow.set()
     assert asker.results == ["begun", 0]
@@ -153,7 +154,7 @@ def test_a_refusal_is_reported_in_two_sentences(qtbot: QtBot, controller: Librar
     asker = Asker()
     for _ in range(2):
         controller.run(lambda library: library.library.patients.create(Patient(code="P-1")), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
     assert asker.refusals == [
         ("Another patient has this code.", "Open the other patient, or choose another code."),
     ]
@@ -184,7 +185,7 @@ def test_what_nobody_foresaw_is_logged_and_reported_plainly(
     def call(_library: OpenedLibrary) -> None:
         raise ZeroDivisionError("P-0147")
 
-    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.refused) as reported:
         controller.run(call, None, None, controller)
     assert reported.args is not None
     assert "P-0147" not in " ".join(reported.args)
@@ -200,7 +201,7 @@ def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, controller: Lib
     go_on.set()
     last = Asker()
     controller.run(lambda _library: "after it", *last.ears)
-    qtbot.waitUntil(lambda: bool(last.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(last.results))
     assert received == []
 
 
@@ -209,12 +210,12 @@ def test_calls_before_opening_and_after_closing_are_refused(
 ) -> None:
     asker = Asker()
     controller.run(lambda library: library.library.patients.search(), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.refusals) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 1)
     opened(qtbot, controller, folder, PASSPHRASE, "hk")
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.close()
     controller.run(lambda library: library.library.patients.search(), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.refusals) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 2)
     assert asker.results == []
     assert controller.state is None
 
@@ -226,13 +227,13 @@ def test_of_an_opening_that_another_or_a_closing_followed_nothing_is_reported(
     reported: list[object] = []
     controller.opened.connect(reported.append)
     controller.not_opened.connect(lambda *words: reported.append(words))
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.open(opening(folder, passphrase, "hk"))
         controller.close()
     assert reported == []
     state = controller.state
     assert state is None
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.opened):
         controller.open(opening(folder, passphrase, "hk"))
         controller.open_demonstration()
     assert [type(one) for one in reported] == [OpenedState]
@@ -275,7 +276,7 @@ def test_the_folder_states_who_may_open_it(
     asker = Asker()
     controller.call(lambda holder: holder.look(folder), *asker.ears)
     controller.call(lambda holder: holder.look(tmp_path / "nothing"), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
     there, nothing = asker.results
     assert isinstance(there, LibraryPlace)
     assert (there.exists, there.codes, there.remembered) == (True, ("hk", "vi"), ())
@@ -314,7 +315,7 @@ def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
         opened(qtbot, controller, folder, PASSPHRASE, code)
         asker.results.clear()
         controller.run(deleted, *asker.ears)
-        qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: bool(asker.results))
         assert asker.results == [left]
 
 
@@ -325,14 +326,14 @@ def deleted(library: OpenedLibrary) -> int:
 def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothing(
     qtbot: QtBot, controller: LibraryController
 ) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=30_000) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         controller.open_demonstration()
     (state,) = reported.args or []
     assert state.is_demonstration
     folder = state.library.folder
     asker = Asker()
     controller.run(lambda library: library.library.patients.search(), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
     (patients,) = asker.results
     assert isinstance(patients, tuple)
     assert all(isinstance(one, StoredPatient) for one in patients)
@@ -342,7 +343,7 @@ def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothi
         ("DEMO-AK", 0),
         ("DEMO-BK", 0),
     ]
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.close()
     assert not folder.exists()
 
@@ -353,7 +354,7 @@ def stored(library: OpenedLibrary) -> list[str]:
 
 def begun_demonstration(qtbot: QtBot, controller: LibraryController, monkeypatch: pytest.MonkeyPatch) -> OpenedState:
     monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())  # nobody waits for visits
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         controller.open_demonstration()
     (state,) = reported.args or []
     assert state.is_demonstration
@@ -372,7 +373,7 @@ def test_after_the_demonstration_the_library_opens_without_its_passphrase_for_th
     assert controller.kept is None
     asker = Asker()
     controller.run(stored, *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
 
 
 def test_the_key_that_is_kept_meanwhile_is_one_and_in_no_file(
@@ -448,10 +449,10 @@ def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: Libra
             ended.set()
 
     controller.run_long(work, *asker.all_ears)
-    qtbot.waitUntil(lambda: asker.shares[:1] == [0.5], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: asker.shares[:1] == [0.5])
     controller.run_long(work, *asker.all_ears)
     assert asker.refusals == [("Another task is still running.", "Wait until it has finished, or stop it.")]
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.close()  # stops it first
     assert ended.is_set()
     assert asker.results == []
@@ -474,9 +475,9 @@ def test_quiet_work_gives_way_to_what_is_asked_and_begins_again_afterwards(
         return "asked for"
 
     controller.run_long(quiet, asker.on_done, asker.on_failed, None, asker, is_quiet=True)
-    qtbot.waitUntil(lambda: began == ["quiet"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: began == ["quiet"])
     controller.run_long(asked_for, asker.on_done, asker.on_failed, None, asker)
-    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
     assert asker.results == ["asked for", "quiet"]
     assert began == ["quiet", "quiet"]
     assert asker.refusals == []
@@ -487,13 +488,13 @@ def test_quiet_work_waits_for_what_was_asked_before(qtbot: QtBot, controller: Li
     asker, may_end = Asker(), Event()
 
     def asked_for(_library: OpenedLibrary, _report: Report) -> str:
-        may_end.wait(WAIT_MS / 1000)
+        may_end.wait(PATIENCE_S)
         return "asked for"
 
     controller.run_long(asked_for, asker.on_done, asker.on_failed, None, asker)
     controller.run_long(lambda *_: "quiet", asker.on_done, asker.on_failed, None, asker, is_quiet=True)
     may_end.set()
-    qtbot.waitUntil(lambda: asker.results == ["asked for", "quiet"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: asker.results == ["asked for", "quiet"])
     assert asker.refusals == []
 
 
@@ -501,15 +502,15 @@ def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, controller: Lib
     opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
     controller.run_long(lambda library, _report: library.folder, asker.on_done, asker.on_failed, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
     assert asker.results == [folder]
 
     def refused(_library: OpenedLibrary, _report: Report) -> None:
         raise LibraryError("There is no room", "Make some")
 
-    qtbot.waitUntil(lambda: controller._long.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: controller._long.is_idle)
     controller.run_long(refused, asker.on_done, asker.on_failed, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
     assert asker.refusals == [("There is no room.", "Make some.")]
 
 
@@ -559,16 +560,16 @@ def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(
     assert key is not None
     before = bytes(key)
     controller.lock()
-    qtbot.waitUntil(lambda: not key, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not key)
     with pytest.raises(LibraryLockedError):
         state.library.library.patients.search()
     controller.run(lambda library: len(library.library.patients.search()), *asker.ears)
     controller.call(unlocking("not this passphrase"), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
     assert not asker.results
     assert not key
     controller.call(unlocking(PASSPHRASE), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
     assert asker.results == [Unlocked(), len(state.library.library.patients.search())]
     assert bytes(key) == before
 
@@ -587,7 +588,7 @@ def test_a_lock_waits_for_long_work(qtbot: QtBot, controller: LibraryController,
     controller.lock()
     assert key
     slow.set()
-    qtbot.waitUntil(lambda: bool(asker.results) and not key, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results) and not key)
 
 
 def test_a_lock_waits_for_long_work_that_was_stopped_and_has_not_ended(
@@ -608,10 +609,10 @@ def test_a_lock_waits_for_long_work_that_was_stopped_and_has_not_ended(
     controller.stop_long()
     controller.lock()
     controller.call(lambda holder: holder.look(folder), *asker.ears)  # is asked after what locks
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
     assert key
     slow.set()
-    qtbot.waitUntil(lambda: not key, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not key)
 
 
 def test_the_key_is_changed_and_who_left_opens_nothing(
@@ -631,7 +632,7 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
         *asker.all_ears,
     )
     assert not controller.state  # nothing is begun meanwhile
-    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals))
     assert asker.refusals == []
     assert not before
     now = controller.state
@@ -639,7 +640,7 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
     assert now.library.data_key == slots.open("hk", PASSPHRASE)
     assert slots.codes == ("hk", "vi")
     controller.run(lambda library: library.library.operators.list(), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
     operators = asker.results[1]
     assert isinstance(operators, tuple)
     assert [one.is_active for one in operators if one.code == "ab"] == [False]
@@ -655,10 +656,10 @@ def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
             lambda holder, report: holder.change_key("", report),
             *asker.all_ears,
         )
-        qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: bool(asker.results or asker.refusals))
     assert asker.refusals == [("Another program has the library open.", "Close that program, then try again.")]
     controller.run(lambda library: len(library.library.operators.list()), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
 
 
 def test_what_is_no_address_is_refused_and_leaves_nothing(
@@ -666,7 +667,7 @@ def test_what_is_no_address_is_refused_and_leaves_nothing(
 ) -> None:
     asker = Asker()
     controller.call(lambda holder: holder.join(tmp_path / "station", "nowhere", "", ""), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
     (joined,) = asker.results
     assert isinstance(joined, Joined)
     assert joined.refusal is not None
@@ -683,7 +684,7 @@ def test_a_move_that_is_refused_leaves_the_library_open(
         lambda holder, report: holder.move_to_server("nowhere", "", str(folder), report),
         *asker.all_ears,
     )
-    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
     assert "This is not the address of a PostgreSQL server" in asker.refusals[0][0]
     assert controller.state is not None
     assert controller.state.library is state.library
@@ -694,7 +695,7 @@ def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: Lib
     opened(qtbot, controller, folder, PASSPHRASE, "hk")
     asker = Asker()
     controller.reopen(lambda holder, report: holder.bring_back(report), *asker.all_ears)
-    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
     assert "This library is already in a folder" in asker.refusals[0][0]
     assert controller.state is not None
 
@@ -706,15 +707,15 @@ def test_a_watch_that_waits_for_a_server_holds_nobody_up(
 
     def listen(_watch: LibraryWatch) -> bool:
         asked.set()
-        has_answer = answers.wait(WAIT_MS / 1000)
+        has_answer = answers.wait(PATIENCE_S)
         answered.set()
         return has_answer
 
     monkeypatch.setattr(LibraryWatch, "_listen", listen)
     opened(qtbot, controller, folder, PASSPHRASE, "hk")
-    qtbot.waitUntil(asked.is_set, timeout=WAIT_MS)
+    qtbot.waitUntil(asked.is_set)
     controller.close()
     assert not answered.is_set()
     answers.set()
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         pass

@@ -28,7 +28,7 @@ from app.storage.stored import LibraryError, Operator, Role
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import Unlocked
 from core.session import Patient, Recording, RecordingKind, Session
-from tests.app.library_answers import WAIT_MS, Asker
+from tests.app.library_answers import Asker
 from tests.app.library_answers import opened as opened_at
 
 PASSPHRASE = "four short words here"
@@ -90,7 +90,7 @@ def test_it_is_missed_within_a_second_and_stated_where_recordings_go(
     elsewhere = folder.with_name("renamed")
     seen = [controller.is_gone]
     began_s = time.monotonic()
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.gone) as stated:
         folder.rename(elsewhere)
     assert time.monotonic() - began_s < 1.5
     what, then = stated.args or ["", ""]
@@ -99,7 +99,7 @@ def test_it_is_missed_within_a_second_and_stated_where_recordings_go(
     assert str(opened.shelter.folder) in then
     assert "connect its disk" in then
     seen.append(controller.is_gone)
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.back) as stated:
         elsewhere.rename(folder)
     assert stated.args == ["The library is available again.", "There were no recordings to add."]
     assert [*seen, controller.is_gone] == [False, True, False]
@@ -113,10 +113,10 @@ def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
     opened = opened_of(controller)
     session_id = visit_of(opened)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.back) as stated:
         elsewhere.rename(folder)
     assert stated.args is not None
     assert stated.args[1] == "1 recording made meanwhile was added."
@@ -130,10 +130,10 @@ def test_what_was_recorded_meanwhile_is_home_at_the_next_start(
     opened = opened_of(controller)
     session_id = visit_of(opened)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.close()
     elsewhere.rename(folder)
     opened_at(qtbot, controller, folder, PASSPHRASE)
@@ -157,7 +157,7 @@ def test_what_cannot_be_brought_home_is_stated_once_and_kept(
     opened = opened_of(controller)
     session_id = visit_of(opened)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
 
@@ -165,7 +165,7 @@ def test_what_cannot_be_brought_home_is_stated_once_and_kept(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("app.storage.bringing_home._copy", full)
-    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.refused) as stated:
         elsewhere.rename(folder)
     assert stated.args is not None
     assert "could not be added yet (No space left on device)" in stated.args[0]
@@ -182,7 +182,7 @@ def test_keys_are_changed_of_the_library_that_is_open_only(
     """Another library in its place keeps its own."""
     opened = opened_of(controller)
     assert "hk" in _slots(opened).codes
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(folder.with_name("renamed"))
     folder.mkdir()
     KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
@@ -198,7 +198,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     asker, before = Asker(), opened_of(controller)
     gone = QSignalSpy(controller.gone)
     controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
-    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals))
     assert asker.refusals == []
     assert opened_of(controller) is not before
     qtbot.wait(1200)
@@ -206,10 +206,10 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     with pytest.raises(LibraryError, match="This library is already open in Gaitwright"), held_alone(folder):
         pass
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     recording_id = record_away(opened_of(controller), visit_id := uuid7())
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.back) as stated:
         elsewhere.rename(folder)
     assert stated.args is not None
     assert stated.args[1] == "1 recording made meanwhile was added."
@@ -223,7 +223,7 @@ def test_the_key_is_not_changed_while_the_library_is_gone(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, opened = Asker(), opened_of(controller)
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(folder.with_name("renamed"))
     controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
     assert asker.refusals == [controller.gone_words]
@@ -239,7 +239,7 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     opened.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
     assert opened.shelter is not None
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     record_away(opened, uuid7())
 
@@ -247,18 +247,18 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("app.storage.bringing_home._copy", full)
-    with qtbot.waitSignals([controller.refused, controller.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([controller.refused, controller.back]):
         elsewhere.rename(folder)
     controller.reopen(
         lambda holder, report: holder.change_key("ab", report),
         *asker.all_ears,
     )
-    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals))
     ((what, remedy),) = asker.refusals
     assert what.startswith("Recordings made while the library was unavailable are not in the library yet")
     assert str(opened.shelter.folder) in remedy
     assert [one.is_active for one in opened_of(controller).library.operators.list()] == [True, True]
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):  # it is watched all the same
+    with qtbot.waitSignal(controller.gone):  # it is watched all the same
         folder.rename(elsewhere)
 
 
@@ -267,7 +267,7 @@ def test_a_library_that_is_closed_while_its_key_changes_stays_closed(
 ) -> None:
     asker = Asker()
     controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
-    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.closed):
         controller.close()
     assert controller.state is None
     assert controller._watch is None
@@ -281,19 +281,19 @@ def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
 ) -> None:
     asker, opened = Asker(), opened_of(controller)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     recording_id = record_away(opened, uuid7())
     controller.lock()
-    qtbot.waitUntil(lambda: not opened.data_key, timeout=WAIT_MS)
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS):
+    qtbot.waitUntil(lambda: not opened.data_key)
+    with qtbot.waitSignal(controller.back):
         elsewhere.rename(folder)
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
     controller.run_long(lambda library, _report: find_interrupted(library), asker.on_done, asker.on_failed, None, asker)
     qtbot.wait(300)
     assert not bool(asker.results or asker.refusals)
     controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, None), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
     (found,) = asker.results[1] if isinstance(asker.results[1], tuple) else ()
     assert (found.recording_id, found.problem) == (recording_id, "")
 
@@ -304,27 +304,27 @@ def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
     asker, delay = Asker(), LoginDelay(folder, time.monotonic)
     controller.lock()
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone):
         folder.rename(elsewhere)
     for _ in range(4):
         controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, delay), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.refusals) == 4, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 4)
     assert {what for what, _ in asker.refusals} == {f"The library is no longer in {folder}."}
     assert delay.left_s("hk") == 0.0
     assert not folder.exists()
     elsewhere.rename(folder)
     controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, delay), *asker.ears)
-    qtbot.waitUntil(lambda: asker.results == [Unlocked()], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: asker.results == [Unlocked()])
 
 
 @pytest.mark.endurance
 def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, controller: LibraryController) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.opened):
         controller.open_demonstration()
     opened = opened_of(controller)
     assert opened.shelter is None
     elsewhere = opened.folder.with_name(f"{opened.folder.name}-renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.gone) as stated:
         opened.folder.rename(elsewhere)
     elsewhere.rename(opened.folder)  # to be removed
     assert stated.args is not None

@@ -29,7 +29,6 @@ from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
 from tests.simulated import session_of
 
-WAIT_MS = 60_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
@@ -142,18 +141,18 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_faile
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         (tmp_path / "library").mkdir()
         controller.open(lambda holder: holder.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE))
     home.show_library((reported.args or [])[0])
-    qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines))
     home.page.panel.analyse_again.trigger()
-    qtbot.waitUntil(lambda: len(home.again.page.ticked) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.again.page.ticked) == 2)
     assert home.bar.primary.text().startswith("Analyse 2 sessions")
     home.again.analyse()
     assert home.current is home.working
-    qtbot.waitUntil(lambda: home.current is home.again.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.again.page)
     assert "2 could not be" in home.banner.text
-    qtbot.waitUntil(lambda: "missing" in home.again.page.list.as_text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "missing" in home.again.page.list.as_text())
     controller.finish()
     home.finish()

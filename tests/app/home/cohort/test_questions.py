@@ -19,7 +19,6 @@ from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
-from tests.app.home.home_library import WAIT_MS
 from tests.app.watchdog import Watchdog
 from tests.simulated import session_of
 
@@ -36,7 +35,7 @@ def asked(qtbot: QtBot, home: Home, table: Path) -> QuestionsPage:
     home.rail.step_pressed.emit(QUESTIONS)
     home.questions.open(table)
     page = home.questions.page
-    qtbot.waitUntil(lambda: page.found is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.found is not None)
     return page
 
 
@@ -60,12 +59,12 @@ def test_a_table_is_asked_beside_the_screen_and_each_change_again(
     assert page.sentence.text().startswith("Walking speed: means of ")
     QTest.keyClicks(page.measure, "K")  # as a list of choices takes letters
     required = GroupQuestion(MEASURE, Grouping.CONDITION)
-    qtbot.waitUntil(lambda: page.found is not None and page.found.question == required, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.found is not None and page.found.question == required)
     page.grouping.setCurrentIndex(page.grouping.findData("age"))  # while the first is asked, the last of these waits
     page.grouping.setCurrentIndex(page.grouping.findData("side"))
     page.included.choose("care")
     required = GroupQuestion(MEASURE, Grouping.SIDE, has_care=True)
-    qtbot.waitUntil(lambda: page.found is not None and page.found.question == required, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.found is not None and page.found.question == required)
 
 
 def test_what_is_shown_is_the_answer(qtbot: QtBot, home: Home, table: Path) -> None:
@@ -97,14 +96,14 @@ def test_what_is_in_sight_is_saved_with_all_its_numbers(qtbot: QtBot, home: Home
     assert home.bar.primary.text() == "Save as CSV"
     out = tmp_path / "groups.csv"
     home.questions.write(out)
-    qtbot.waitUntil(lambda: "Groups saved." in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "Groups saved." in home.banner.text)
     with out.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert page.found is not None
     assert [row["group"] for row in rows] == [one.group for one in page.found.rows]
     assert [float(row["mean"]) for row in rows] == [one.mean for one in page.found.rows]
     home.questions.write(tmp_path)  # a folder
-    qtbot.waitUntil(lambda: "The groups could not be saved" in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "The groups could not be saved" in home.banner.text)
 
 
 def test_the_last_table_is_asked_again_the_next_time(qtbot: QtBot, home: Home, settings: Settings, table: Path) -> None:
@@ -114,7 +113,7 @@ def test_the_last_table_is_asked_again_the_next_time(qtbot: QtBot, home: Home, s
     page = home.questions.page
     assert (page.found, page.question) == (None, None)
     home.rail.step_pressed.emit(QUESTIONS)
-    qtbot.waitUntil(lambda: page.found is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.found is not None)
 
 
 def test_a_table_that_is_gone_is_not_asked_for(home: Home, settings: Settings, tmp_path: Path) -> None:
@@ -131,7 +130,7 @@ def test_a_file_that_is_no_table_is_refused_in_words(
     broken = tmp_path / "broken.parquet"
     broken.write_bytes(b"PAR1")
     home.questions.open(broken)
-    qtbot.waitUntil(page.refusal.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.refusal.isVisible)
     assert "broken.parquet: the file is not a readable Parquet file" in page.refusal.text
     assert "parquet written by gaitwright batch" in page.refusal.text
     assert page.question is None
@@ -144,7 +143,7 @@ def test_where_no_session_has_a_recording_no_table_is_made_and_the_page_states_w
 ) -> None:
     home.rail.step_pressed.emit(QUESTIONS)
     home.again.write(tmp_path / "made", None)
-    qtbot.waitUntil(lambda: "no session in this library has a recording" in home.banner.text.lower(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "no session in this library has a recording" in home.banner.text.lower())
     page = home.questions.page
     assert home.current is page
     assert page.make_table.isVisible()
@@ -170,7 +169,7 @@ def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
         None,
         keeper,
     )
-    qtbot.waitUntil(lambda: bool(kept), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(kept))
     asked_in: list[object] = []
 
     def choose(_window: object, _title: str, _proposed: object, chosen: Callable[[str], None]) -> None:
@@ -184,7 +183,7 @@ def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
     page.make_table.click()
     assert asked_in == [page]
     assert home.working.isVisible()
-    qtbot.waitUntil(lambda: page.found is not None, timeout=60_000)
+    qtbot.waitUntil(lambda: page.found is not None)
     assert home.current is page
     assert page.measure.isVisible()
     assert not page.make_table.isVisible()

@@ -15,7 +15,6 @@ from app.home.importing.import_words import liveliness
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
 from devices.files.formats import read_trial
-from tests.app.home.home_library import WAIT_MS
 from tests.app.home.importing.test_importing import choices, read, shown
 from tests.clock_files import ALL, TIME_S, SensorTable, jumped, pair, restarted, without
 
@@ -31,7 +30,7 @@ def splits(page: ImportPage) -> list[Button]:
 def split(qtbot: QtBot, page: ImportPage, number: int = 0) -> None:
     before = len(page.draft.kinds)
     QTest.mouseClick(splits(page)[number], Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: len(page.draft.kinds) > before, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(page.draft.kinds) > before)
 
 
 def test_a_clean_import_shows_nothing_of_clocks(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
@@ -83,7 +82,7 @@ def test_a_recording_is_split_and_both_parts_come_into_the_library(
     assert page.code.text == "P-0300"
     assert home.bar.primary.isEnabled()
     QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.page)
     assert controller.state is not None
     library = controller.state.library.library
     patient = library.patients.find("P-0300")
@@ -129,7 +128,7 @@ def test_splitting_goes_by_keys(qtbot: QtBot, home: Home, tmp_path: Path) -> Non
     QTest.keyClick(kind, Qt.Key.Key_Tab)
     assert button.hasFocus()
     QTest.keyClick(button, Qt.Key.Key_Space)
-    qtbot.waitUntil(lambda: len(page.draft.kinds) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(page.draft.kinds) == 2)
 
 
 def test_the_small_curve_of_a_clock_that_jumped_has_room(tmp_path: Path) -> None:

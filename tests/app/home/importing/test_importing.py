@@ -20,7 +20,7 @@ from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.session import RecordingKind
 from devices.files.refusal import FileRefusedError
-from tests.app.home.home_library import WAIT_MS
+from tests.waiting import PATIENCE_S
 
 FindData = Callable[[str], Path]
 
@@ -46,7 +46,7 @@ def shown(page: ImportPage) -> str:
 
 def read(qtbot: QtBot, home: Home, *paths: Path) -> ImportPage:
     home.importing.read(paths)
-    qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.importing.page)
     return home.importing.page
 
 
@@ -91,7 +91,7 @@ def test_a_recording_of_another_program_comes_into_the_library(
     page.code.set_text("P-0300")
     page.day_field.set_text("2026-03-09")
     QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.page)
     assert controller.state is not None
     library = controller.state.library.library
     patient = library.patients.find("P-0300")
@@ -154,7 +154,7 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
     assert "mt.txt: the sample rate is missing." in stated
     page.rate.set_value(100.0)
     page.read_again.click()
-    qtbot.waitUntil(lambda: "1 recording of Xsens MT Manager" in shown(page), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "1 recording of Xsens MT Manager" in shown(page))
     assert "3.0 s · 100 Hz" in shown(page)
     assert not page.read_again.isVisible()
 
@@ -162,7 +162,7 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
 def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("to be left out\n")
     home.importing.read([tmp_path / "notes.txt"])
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert home.banner.text.startswith("The file format is not recognised, and the file is no table of numbers.")
     assert home.banner.text.endswith("Where: notes.txt.")
     assert home.current is home.page
@@ -174,7 +174,7 @@ def test_the_motion_places_the_sensors_of_a_real_walk(qtbot: QtBot, home: Home, 
     for torso in ("00B42268", "00B42279"):
         choices(page)[f"Position of {torso}"].setCurrentIndex(8)
     page.draft.place.click()
-    qtbot.waitUntil(page.draft.is_right.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.draft.is_right.isVisible)
     assert (
         "According to the movement, 00B4227C, 00B4227D and 00B421EF are on one leg, listed from the thigh down."
         in shown(page)
@@ -193,12 +193,12 @@ def test_a_site_that_was_stated_shows_the_side(qtbot: QtBot, home: Home, test_da
     thigh = choices(page)["Position of 00B4227C"]
     thigh.setCurrentIndex(1)  # left, whatever it was
     page.draft.place.click()
-    qtbot.waitUntil(lambda: page.draft.sites["00B421EF"] is Site.LEFT_FOOT, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.draft.sites["00B421EF"] is Site.LEFT_FOOT)
     assert page.draft.sites["00B421E6"] is Site.RIGHT_FOOT
     choices(page)["Position of 00B421E6"].setCurrentIndex(0)
     thigh.setCurrentIndex(3)  # a foot, which the motion takes for a thigh
     page.draft.place.click()
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert "The movement does not fit the entered sensor positions" in home.banner.text
     assert page.draft.sites["00B421E6"] is None
 
@@ -213,7 +213,7 @@ def test_positions_are_proposed_from_movement_without_being_asked_for(
     qtbot: QtBot, home: Home, test_data: FindData
 ) -> None:
     page = read(qtbot, home, *legs_of_a_real_walk(test_data))
-    qtbot.waitUntil(page.draft.is_right.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.draft.is_right.isVisible)
     assert "00B4227C, 00B4227D and 00B421EF are on one leg" in shown(page)
     assert not page.draft.is_left.hasFocus()  # somebody may be typing
     assert set(page.draft.sites.values()) == {None}
@@ -227,7 +227,7 @@ def test_what_the_motion_shows_late_of_one_draft_is_not_stated_of_the_next(
     left, looked = Event(), list[str]()
 
     def slowly(draft: SessionDraft, _worn: Sequence[str]) -> None:
-        left.wait(WAIT_MS / 1000)
+        left.wait(PATIENCE_S)
         looked.append(draft.recordings[0].trial.sensors[0].name)
 
     monkeypatch.setattr("app.home.importing.controller.chains_of_motion", slowly)
@@ -240,8 +240,8 @@ def test_what_the_motion_shows_late_of_one_draft_is_not_stated_of_the_next(
     home.importing.leave_out()
     assert "Session 2 of 2" in shown(page)
     left.set()
-    qtbot.waitUntil(lambda: sorted(looked) == ["one", "one", "three"], timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: not home.importing.findChildren(QThread), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sorted(looked) == ["one", "one", "three"])
+    qtbot.waitUntil(lambda: not home.importing.findChildren(QThread))
     assert not home.banner.isVisible()
 
 
@@ -275,7 +275,7 @@ def test_that_sensors_shared_a_receiver_is_asked_where_files_do_not_state_it(
         choices(page)[f"Position of {key}"].setCurrentIndex(number)
     page.code.set_text("P-0301")
     QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is home.page)
     assert controller.state is not None
     library = controller.state.library.library
     patient = library.patients.find("P-0301")
@@ -299,7 +299,7 @@ def test_import_begins_with_a_choice_of_files_or_a_folder(qtbot: QtBot, home: Ho
 def test_nothing_is_filled_in_but_what_the_files_say(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     """Not the code of the patient who is in sight."""
     home.page.patients.choose_line(home.page.patients.lines[0].id)
-    qtbot.waitUntil(lambda: home.patients.patient is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.patients.patient is not None)
     home.page.empty.importing.clicked.emit()
     page = read(qtbot, home, monitors(tmp_path / "walk.csv", ("Left Thigh", "Left Shank")))
     assert (page.code.text, home.bar.primary.isEnabled()) == ("", False)

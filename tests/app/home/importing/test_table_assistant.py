@@ -17,7 +17,6 @@ from app.system.known_tables import known_tables
 from app.widgets.choice import Choice
 from app.wording.translation import use_language
 from core.samples import ImuBlock
-from tests.app.home.home_library import WAIT_MS
 from tests.app.home.importing.test_importing import choices, shown
 from tests.devices.files.test_public_layouts import LEFT, RIGHT, no_header, rows_of, write
 from tests.devices.files.test_table_preview import NAMES, table
@@ -28,7 +27,7 @@ READY = "1 sensor · 8.0 s · 100 Hz · gravity 9.9 m/s²"
 def explain(qtbot: QtBot, home: Home, *paths: Path) -> TableForm:
     """Read files of which one has to be explained."""
     home.importing.read(paths)
-    qtbot.waitUntil(home.importing.page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.importing.page.table.isVisible)
     return home.importing.page.table
 
 
@@ -42,7 +41,7 @@ def press_to(choice: Choice, data: object) -> None:
 
 
 def wait_for(qtbot: QtBot, form: TableForm, words: str) -> None:
-    qtbot.waitUntil(lambda: words in form.notice.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: words in form.notice.text)
 
 
 def press_enter(home: Home) -> None:
@@ -53,7 +52,7 @@ def press_enter(home: Home) -> None:
 
 def wait_for_draft(qtbot: QtBot, home: Home) -> ImportPage:
     page = home.importing.page
-    qtbot.waitUntil(lambda: home.current is page and page.draft.isVisible(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.current is page and page.draft.isVisible())
     return page
 
 
@@ -101,7 +100,7 @@ def test_columns_without_names_are_called_by_their_places(qtbot: QtBot, home: Ho
     use_language("de")
     try:
         form = explain(qtbot, home, *no_header(tmp_path))
-        qtbot.waitUntil(lambda: form.acc[0].currentData() == "column 2", timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: form.acc[0].currentData() == "column 2")
         assert form.acc[0].currentText() == "Spalte 2"
         assert "Spalte 2 Beschleunigung x" in form.rows.as_text()
         assert "column 2" not in shown(home.importing.page)
@@ -150,11 +149,11 @@ def test_each_choice_changes_what_is_shown(qtbot: QtBot, home: Home, tmp_path: P
     before = face(form)
     which, data, words = CHANGES[change]
     press_to(which(form), data)
-    qtbot.waitUntil(lambda: face(form) != before, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: face(form) != before)
     assert words in form.notice.text
     assert home.bar.primary.isEnabled() == words.startswith(("1 sensor", "This file has no"))
     form.detect.click()
-    qtbot.waitUntil(lambda: face(form) == before, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: face(form) == before)
 
 
 def test_nothing_is_confirmed_before_it_was_read_as_stated(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
@@ -175,7 +174,7 @@ def test_what_was_stated_is_kept_for_tables_of_the_same_columns(
 ) -> None:
     form = explain(qtbot, home, table(tmp_path / "walk_left_thigh.csv", names=("t", "P-0147", "q", "r", "u", "v", "w")))
     press_to(form.gyr_unit, "mdeg/s")
-    qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
+    qtbot.waitUntil(home.bar.primary.isEnabled)
     press_enter(home)
     wait_for_draft(qtbot, home)
     (kept,) = known_tables().values()
@@ -197,18 +196,18 @@ def test_what_is_kept_can_be_changed_and_forgotten(qtbot: QtBot, home: Home, tmp
     home.importing.read([path])
     page = wait_for_draft(qtbot, home)
     page.draft.columns.click()
-    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.table.isVisible)
     press_to(page.table.gyr_unit, "mdeg/s")
-    qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
+    qtbot.waitUntil(home.bar.primary.isEnabled)
     press_enter(home)
     wait_for_draft(qtbot, home)
     (block,) = blocks(home).values()
     np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(LEFT.gyr) / 1000, atol=1e-9)
     page.draft.columns.click()
-    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.table.isVisible)
     assert page.table.gyr_unit.currentData() == "mdeg/s"
     page.table.detect.click()
-    qtbot.waitUntil(lambda: page.table.gyr_unit.currentData() == "rad/s", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.table.gyr_unit.currentData() == "rad/s")
     press_enter(home)
     wait_for_draft(qtbot, home)
     (block,) = blocks(home).values()
@@ -225,7 +224,7 @@ def test_what_is_shown_next_is_seen_from_its_beginning(qtbot: QtBot, home: Home,
     area.verticalScrollBar().setValue(area.verticalScrollBar().maximum())
     assert area.verticalScrollBar().value() > 0
     page.explain.click()
-    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.table.isVisible)
     assert area.verticalScrollBar().value() == 0
     assert page.table.encoding.hasFocus()
 
@@ -248,13 +247,13 @@ def test_tables_of_two_programs_are_asked_about_each(qtbot: QtBot, home: Home, t
     table(tmp_path / "walk_right_thigh.csv", names=("T", *NAMES[1:]))
     explain(qtbot, home, tmp_path)
     press_enter(home)
-    qtbot.waitUntil(lambda: "Table 2 of 2: " in shown(home.importing.page), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "Table 2 of 2: " in shown(home.importing.page))
     home.bar.quiet[0].click()
     page = wait_for_draft(qtbot, home)
     assert [*blocks(home)] == ["walk_left_thigh"]
     assert "walk_right_thigh.csv: the file format is not recognised" in shown(page)
     page.explain.click()
-    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.table.isVisible)
     assert "walk_right_thigh.csv" in shown(page)
     press_enter(home)
     wait_for_draft(qtbot, home)
@@ -265,7 +264,7 @@ def test_a_table_without_names_is_confirmed_each_time_as_it_was(qtbot: QtBot, ho
     """Seven columns are those of many programs."""
     form = explain(qtbot, home, *no_header(tmp_path / "one"))
     press_to(form.gyr_unit, "mdeg/s")
-    qtbot.waitUntil(home.bar.primary.isEnabled, timeout=WAIT_MS)
+    qtbot.waitUntil(home.bar.primary.isEnabled)
     press_enter(home)
     wait_for_draft(qtbot, home)
     home.escape()
@@ -311,7 +310,7 @@ def test_files_that_are_not_called_alike_are_made_one_recording(qtbot: QtBot, ho
     page = wait_for_draft(qtbot, home)
     assert "Session 1 of 2" in shown(page)
     page.draft.combine.click()
-    qtbot.waitUntil(lambda: len(page.draft.sites) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(page.draft.sites) == 2)
     assert "Session 1 of 2" not in shown(page)
     assert not page.draft.combine.isVisible()
     home.escape()
@@ -323,10 +322,10 @@ def test_what_was_left_out_stays_refused_in_words(qtbot: QtBot, home: Home, tmp_
     explain(qtbot, home, table(tmp_path / "walk.csv"))
     home.bar.quiet[0].click()
     page = home.importing.page
-    qtbot.waitUntil(page.choose_files.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.choose_files.isVisible)
     assert "walk.csv: the file format is not recognised" in shown(page)
     page.explain.click()
-    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.table.isVisible)
     home.escape()
     assert home.current is home.page
     assert known_tables() == {}
@@ -341,7 +340,7 @@ def test_a_session_that_was_taken_in_does_not_come_again(qtbot: QtBot, home: Hom
     assert "Session 1 of 2" in shown(page)
     home.importing.leave_out()
     page.explain.click()
-    qtbot.waitUntil(page.table.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(page.table.isVisible)
     press_enter(home)
     wait_for_draft(qtbot, home)
     assert "Session 1 of 2" in shown(page)

@@ -21,7 +21,7 @@ from app.wording.dates import date
 from core.body import Site
 from core.samples import SensorInfo
 from core.session import Recording, RecordingKind, Session
-from tests.app.home.home_library import PASSPHRASE, WAIT_MS, delete_patient, deletion_dialog
+from tests.app.home.home_library import PASSPHRASE, delete_patient, deletion_dialog
 from tests.app.home.test_home import codes, restores, sessions
 
 
@@ -56,14 +56,14 @@ def test_before_a_patient_is_deleted_it_is_stated_what_goes_and_until_when_it_ca
 def test_a_patient_whom_another_opened_today_is_deleted_with_a_warning_and_not_unseen(
     qtbot: QtBot, home: Home, folder: Path
 ) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     visits = [line.id for line in sessions(home)]
     with another_operator(folder) as elsewhere:
         elsewhere.sessions.view(visits[0])
         dialog = deletion_dialog(qtbot, home)
         assert dialog.others.text.startswith("Opened by another user: ab, today ")
         elsewhere.sessions.create(elsewhere.sessions.get(visits[0]).patient_id, Session(()))
-        with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as reported:
+        with qtbot.waitSignal(home.deleting.refused) as reported:
             dialog.delete.click()
         assert reported.args is not None
         assert reported.args[0] == "Someone else has changed this in the meantime."
@@ -71,7 +71,7 @@ def test_a_patient_whom_another_opened_today_is_deleted_with_a_warning_and_not_u
 
 
 def test_a_patient_who_is_being_recorded_is_deleted_with_a_warning(qtbot: QtBot, home: Home, folder: Path) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     with another_operator(folder) as elsewhere:
         visit = sessions(home)[0].id
         elsewhere.sessions.place(visit, {Site.LEFT_THIGH: PlacedSensor("A", SensorInfo())})
@@ -85,11 +85,11 @@ def test_a_patient_who_is_being_recorded_is_deleted_with_a_warning(qtbot: QtBot,
 
 
 def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: QtBot, home: Home, folder: Path) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
     with another_operator(folder) as elsewhere:
         (patient,) = elsewhere.patients.search("0163")
         elsewhere.patients.delete(patient)
-    with qtbot.waitSignal(home.patients.refused, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(home.patients.refused) as reported:
         home.patients.read()  # as the watch has it done
     assert reported.args == [
         "At another workstation, ab deleted P-0163.",
@@ -99,7 +99,7 @@ def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: Qt
     with qtbot.assertNotEmitted(home.patients.refused):
         home.patients.read()
         home.show_settings()
-        qtbot.waitUntil(lambda: len(restores(home)) == 1, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: len(restores(home)) == 1)
     (restore,) = restores(home).values()
     assert restore.accessibleDescription().startswith("Deleted by: ab, today ")
 
@@ -111,7 +111,7 @@ def test_a_viewer_is_refused_before_anything_is_asked(qtbot: QtBot, home: Home, 
         library.log_in("ab")
         own = next(one for one in library.operators.list() if one.code == "hk")
         library.operators.change(replace(own, role=Role.VIEWER))
-    with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(home.deleting.refused) as reported:
         home.page.panel.delete_patient.trigger()
     assert reported.args is not None
     assert reported.args[0] == "This requires the role clinician."
@@ -120,27 +120,27 @@ def test_a_viewer_is_refused_before_anything_is_asked(qtbot: QtBot, home: Home, 
 
 def test_what_is_deleted_comes_back_by_its_keys_also_without_a_focus(qtbot: QtBot, home: Home) -> None:
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
     assert home.toast.isVisible()
     if (focused := home.focusWidget()) is not None:
         focused.clearFocus()
     handle = home.windowHandle()
     assert handle is not None
     QTest.keyClick(handle, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"])
 
 
 def test_an_undo_that_is_refused_is_offered_again(qtbot: QtBot, home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
 
     def refuse(_patients: object, _patient: object) -> None:
         raise ServerSilentError("The server does not respond", "Try again")
 
     with monkeypatch.context() as patched:
         patched.setattr(Patients, "restore", refuse)
-        with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS):
+        with qtbot.waitSignal(home.deleting.refused):
             home.toast.undo()
     assert home.toast.isVisible()
     home.toast.undo()
-    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"])

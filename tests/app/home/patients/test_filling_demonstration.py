@@ -19,7 +19,6 @@ from core.session import Patient, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings
 from tests.app.home.home_library import delete_patient
 
-WAIT_MS = 20_000
 STARTED = datetime.datetime(2026, 11, 20, 11, 20, tzinfo=datetime.UTC)
 WALKED = WalkerSettings(recordings=(Standing(), Walk(strides=5)))
 
@@ -99,10 +98,10 @@ def home(
     home.resize(1280, 800)
     qtbot.addWidget(home)
     home.show()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         controller.open_demonstration()
     home.show_library((reported.args or [])[0])
-    qtbot.waitUntil(lambda: home.page.patients.line is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.page.patients.line is not None)
     yield home
     home.finish()
 
@@ -116,10 +115,10 @@ def finish_one(qtbot: QtBot, home: Home, then: tuple[int, int]) -> None:
     (held,) = HELD
     before = len(held.waiting)
     held.go_on()
-    qtbot.waitUntil(lambda: len(held.waiting) == before, timeout=WAIT_MS)  # its analysis waits now
+    qtbot.waitUntil(lambda: len(held.waiting) == before)  # its analysis waits now
     held.waiting.insert(0, held.waiting.pop())
     held.go_on()
-    qtbot.waitUntil(lambda: ready(home) == then or not home.filling.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: ready(home) == then or not home.filling.is_busy)
 
 
 @pytest.mark.endurance
@@ -128,44 +127,44 @@ def test_patients_are_there_at_once_and_each_visit_once_it_is_ready(qtbot: QtBot
     assert [line.words[0] for line in home.page.patients.lines] == ["DEMO-A", "DEMO-B"]
     assert ready(home) == (0, 3)
     assert len(held.waiting) == 2, "as many as there are processes"
-    qtbot.waitUntil(lambda: "being recorded" in home.page.panel.none_yet.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "being recorded" in home.page.panel.none_yet.text())
     assert home.filling.strip.isVisible()
     assert home.filling.strip.words.text().endswith("0 of 3 are ready.")
     finish_one(qtbot, home, (1, 3))
-    qtbot.waitUntil(lambda: len(home.page.sessions.lines) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.page.sessions.lines) == 1)
     card = home.page.panel.course
-    qtbot.waitUntil(lambda: [one.course is not None for one in card.visits] == [True], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.course is not None for one in card.visits] == [True])
     finish_one(qtbot, home, (2, 3))
     finish_one(qtbot, home, (3, 3))
     assert not home.filling.is_busy
     assert held.is_stopped
     assert not home.filling.strip.isVisible()
     assert not home.banner.isVisible()
-    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 2)
 
 
 @pytest.mark.endurance
 def test_what_fails_is_stated_and_the_others_are_made(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
     held.go_on(RuntimeError("a process was ended"))
-    qtbot.waitUntil(lambda: len(held.waiting) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(held.waiting) == 2)
     finish_one(qtbot, home, (1, 3))
     finish_one(qtbot, home, (2, 3))
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert home.banner.text.startswith("1 visit could not be simulated.")
-    qtbot.waitUntil(lambda: len(home.page.sessions.lines) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.page.sessions.lines) == 1)
 
 
 @pytest.mark.endurance
 def test_a_visit_of_a_patient_who_was_deleted_meanwhile_stays_out(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
     delete_patient(qtbot, home)
-    qtbot.waitUntil(lambda: len(home.page.patients.lines) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(home.page.patients.lines) == 1)
     held.go_on()
     held.go_on()
-    qtbot.waitUntil(lambda: len(held.waiting) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(held.waiting) == 1)
     finish_one(qtbot, home, (1, 3))
-    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(home.banner.isVisible)
     assert home.banner.text.startswith("2 visits could not be simulated.")
 
 
@@ -179,10 +178,10 @@ def test_who_leaves_the_demonstration_ends_what_goes_on_for_it(
     assert not home.filling.is_busy
     late[0].set_result(late[1]())  # what comes too late is nobody's
     asked: list[object] = []
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+    with qtbot.waitSignal(controller.opened) as reported:
         controller.open_demonstration()
     home.show_library((reported.args or [])[0])
-    qtbot.waitUntil(lambda: home.page.patients.line is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.page.patients.line is not None)
     assert len(HELD) == 2
     assert home.page.sessions.lines == ()
     assert asked == []

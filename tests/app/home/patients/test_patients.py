@@ -6,7 +6,6 @@ from pytestqt.qtbot import QtBot
 from app.home.home import Home
 from app.widgets.line_list import PatientLine
 from app.workers.library_controller import LibraryController
-from tests.app.home.home_library import WAIT_MS
 
 
 class Later(QObject):
@@ -24,9 +23,9 @@ class Later(QObject):
 def wait_for_answers(qtbot: QtBot, controller: LibraryController) -> None:
     """Until all is answered, and what was asked for with an answer."""
     laters = [Later(controller)]
-    qtbot.waitUntil(lambda: laters[0].is_answered, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: laters[0].is_answered)
     laters.append(Later(controller))
-    qtbot.waitUntil(lambda: laters[1].is_answered, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: laters[1].is_answered)
 
 
 def test_who_is_requested_for_is_chosen_though_the_patients_are_read_again_meanwhile(

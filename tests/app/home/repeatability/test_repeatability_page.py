@@ -12,7 +12,7 @@ from app.home.repeatability.repeatability_page import RepeatabilityPage, study_s
 from app.workers.library_controller import LibraryController
 from core.verdicts.sigmas import PUBLISHED, in_use, use
 from tests.app.cohort.repeatability.own_study import own_study
-from tests.app.home.home_library import WAIT_MS, open_library
+from tests.app.home.home_library import open_library
 
 OWN = "Error figures: own study, 20 people, 12 Nov 2026."
 
@@ -46,14 +46,14 @@ def test_figures_of_a_file_are_used_by_every_difference_and_given_up_again(
     home.repeatability.open(tmp_path / FIGURES)
     assert in_use() is PUBLISHED  # to look at figures is not to use them
     press(home, "Use these figures")
-    qtbot.waitUntil(lambda: shown.used.text() == OWN, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: shown.used.text() == OWN)
     assert in_use().study is not None
     open_library(qtbot, controller, home, folder)  # at the next start
     assert in_use().study is not None
     home.questions.repeatability_requested.emit()
-    qtbot.waitUntil(lambda: shown.own is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: shown.own is not None)
     press(home, "Use published figures")
-    qtbot.waitUntil(lambda: shown.used.text() == "Error figures: published.", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: shown.used.text() == "Error figures: published.")
     assert in_use() is PUBLISHED
 
 
@@ -61,7 +61,7 @@ def test_a_library_without_such_walks_is_refused_with_what_to_do(
     qtbot: QtBot, home: Home, shown: RepeatabilityPage
 ) -> None:
     press(home, "Calculate from this library")
-    qtbot.waitUntil(shown.refusal.isVisible, timeout=WAIT_MS)
+    qtbot.waitUntil(shown.refusal.isVisible)
     assert home.current is shown
     assert "0 of the 5 people needed" in shown.refusal.text
     assert "with the condition “repeatability”" in shown.refusal.text

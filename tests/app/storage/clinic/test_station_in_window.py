@@ -17,7 +17,6 @@ from tests.app.library_answers import Asker, opened
 from tests.app.storage.clinic.conftest import PASSPHRASE
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
-WAIT_MS = 60_000
 
 
 @pytest.fixture
@@ -36,7 +35,7 @@ def test_a_library_goes_to_the_server_and_comes_back_while_somebody_is_logged_in
         lambda holder, report: holder.move_to_server(database_url, "", str(shared_place), report),
         *asker.all_ears,
     )
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.results))
     assert isinstance(asker.results[0], Moved)
     assert controller.state is not None
     assert controller.state.library.shared is not None
@@ -46,7 +45,7 @@ def test_a_library_goes_to_the_server_and_comes_back_while_somebody_is_logged_in
         lambda holder, report: holder.bring_back(report),
         *asker.all_ears,
     )
-    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
     assert controller.state is not None
     library = controller.state.library
     assert library.shared is None
@@ -67,7 +66,7 @@ def test_a_move_whose_place_is_missing_leaves_the_folder_to_work_with(
         lambda holder, report: holder.move_to_server(database_url, "", str(tmp_path / "no"), report),
         *asker.all_ears,
     )
-    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
     assert "is not there" in asker.refusals[0][0]
     assert controller.state is not None
     assert controller.state.library.shared is None
@@ -84,7 +83,7 @@ def test_a_station_joins_and_a_place_that_is_missing_here_is_reported_as_such(
 
     for place in (str(tmp_path / "no"), "", moved.journals):
         controller.call(joining(place), *asker.ears)
-    qtbot.waitUntil(lambda: len(asker.results) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(asker.results) == 3)
     missing, unconfirmed, joined = asker.results
     assert isinstance(missing, Joined)
     assert missing.is_place

@@ -28,8 +28,6 @@ from tests.app.storage.clinic.test_stations import record
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 
-WAIT_MS = 40_000  # on a busy machine
-
 
 class Server:
     """A PostgreSQL of these tests' own, to be stopped as by a power cut, and started again."""
@@ -80,7 +78,7 @@ def _listens_often(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture
 def controller(qtbot: QtBot, moved: Station, folder: Path) -> Iterator[LibraryController]:
     controller = LibraryController()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.opened):
         controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
     yield controller
     controller.finish()
@@ -100,13 +98,13 @@ def opened_of(controller: LibraryController) -> OpenedLibrary:
 def test_a_server_that_goes_and_comes_back_is_stated_and_nothing_freezes(
     qtbot: QtBot, controller: LibraryController, server: Server
 ) -> None:
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.gone) as stated:
         server.stop()
     what, then = stated.args or ["", ""]
     assert what == "The clinic's server does not respond."
     assert "stay on this computer" in then
     assert controller.is_gone
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.back) as stated:
         server.start()
     assert (stated.args or [""])[0] == "The clinic's server responds again."
     assert not controller.is_gone
@@ -119,7 +117,7 @@ def test_what_another_station_does_is_received_and_its_own_doing_is_not(
     qtbot.wait(2000)  # until it has received how far the others are
     with qtbot.assertNotEmitted(controller.changed_elsewhere, wait=1000):
         own.library.patients.create(Patient(code="P-7"))
-    with qtbot.waitSignal(controller.changed_elsewhere, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.changed_elsewhere):
         other.library.patients.create(Patient(code="P-8"))
 
 
@@ -130,14 +128,14 @@ def test_what_was_recorded_is_handed_over_by_itself_and_trouble_is_stated_once(
     (line,) = own.library.sessions.list()
     elsewhere = shared_place.with_name("unmounted")
     shared_place.rename(elsewhere)
-    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as stated:
+    with qtbot.waitSignal(controller.refused) as stated:
         record(own, line.id, "walk 2")
     what, then = stated.args or ["", ""]
     assert what == "The place of the clinic's recordings is not there."
     assert ("Recordings made here stay on this computer and are transferred automatically as soon as possible") in then
     assert count_waiting(own) == 1
     elsewhere.rename(shared_place)
-    qtbot.waitUntil(lambda: count_waiting(own) == 0, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: count_waiting(own) == 0)
 
 
 def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
@@ -145,9 +143,9 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
 ) -> None:
     server.stop()
     try:
-        with qtbot.waitSignals([controller.not_opened, controller.can_work_away], timeout=WAIT_MS):
+        with qtbot.waitSignals([controller.not_opened, controller.can_work_away]):
             controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
-        with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        with qtbot.waitSignal(controller.opened):
             controller.open(lambda holder: holder.open_away(folder, PASSPHRASE, "hk"))
         assert controller.state is not None
         assert controller.state.is_away
@@ -157,7 +155,7 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
         record(away, visit.id, "walk 1")
         spy = _Received(controller)
         controller.lock()
-        with qtbot.waitCallback(timeout=WAIT_MS) as unlocked:
+        with qtbot.waitCallback() as unlocked:
             spy.unlock(controller, unlocked)
         assert away.data_key
         with pytest.raises(
@@ -166,13 +164,13 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
             refuse_change(away)
     finally:
         server.start()
-    qtbot.waitUntil(lambda: spy.count == 1, timeout=WAIT_MS)
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+    qtbot.waitUntil(lambda: spy.count == 1)
+    with qtbot.waitSignal(controller.opened):
         controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
     assert controller.state is not None
     assert (controller.state.is_away, controller.state.brought_from_away) == (False, 1)
     assert len(other.library.sessions.get(visit.id).recordings) == 1
-    qtbot.waitUntil(lambda: count_waiting(opened_of(controller)) == 0, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: count_waiting(opened_of(controller)) == 0)
     edited = replace(patient.details, height_m=1.7)
     assert other.library.patients.change(other.library.patients.get(patient.id), edited).details.height_m == 1.7
 

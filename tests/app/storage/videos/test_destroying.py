@@ -8,6 +8,7 @@ from uuid import UUID
 
 import pytest
 
+from app.storage.journal.destroying import destroy_file
 from app.storage.journal.header import IDENTITY, NO_KEY, WRAPPED_BYTES, JournalHeader
 from app.storage.opened import OpenedLibrary
 from app.storage.retention import destroy_overdue, destroy_recording
@@ -250,12 +251,11 @@ def test_a_video_whose_file_another_program_holds_keeps_no_other_one(
     timed: OpenedLibrary, recording_id: UUID, make_video: MakeVideo, later: Later, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     held = min((make_video(recording_id), make_video(recording_id, camera=2)), key=lambda one: one.file)
-    destroy = destroying.destroy_file
 
     def refused(path: Path) -> None:
         if path.name == held.file:
             raise PermissionError(13, "held", str(path))
-        destroy(path)
+        destroy_file(path)
 
     monkeypatch.setattr(destroying, "destroy_file", refused)
     go_on(timed, later, 366)

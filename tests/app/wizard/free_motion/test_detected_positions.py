@@ -61,7 +61,7 @@ def test_detected_positions_are_used_by_one_button_of_the_page_and_the_step_goes
     assert moved.state is StepState.ATTENTION
     moved.enter()
     before = dict(visit.sensors.site_of)
-    with qtbot.waitSignals([moved.done, moved.offered, visit.worn.corrected], timeout=10_000):
+    with qtbot.waitSignals([moved.done, moved.offered, visit.worn.corrected]):
         moved.page.swapped.use.click()
     assert visit.sensors.site_of == {name: detected.get(site, site) for name, site in before.items()}
     free = visit.recordings.free_motion
@@ -78,9 +78,9 @@ def test_positions_that_were_changed_by_one_button_come_back_with_their_doubt_wh
     visit.sensors.doubt(MIXED)
     before = dict(visit.sensors.site_of)
     moved.done.connect(moved.leave)  # as the wizard does
-    with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
+    with qtbot.waitSignal(visit.worn.corrected):
         press(moved)
-    with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
+    with qtbot.waitSignal(visit.worn.corrected):
         moved.undo()
     assert (visit.sensors.site_of, visit.sensors.detected) == (before, MIXED)
     free = visit.recordings.free_motion
@@ -219,7 +219,7 @@ def test_a_motion_that_shows_no_positions_leads_to_them(qtbot: QtBot, visit: Vis
     moved.enter()
     done: list[None] = []
     moved.done.connect(lambda: done.append(None))
-    with qtbot.waitSignal(moved.reported, timeout=10_000) as reported:
+    with qtbot.waitSignal(moved.reported) as reported:
         press(moved)
     assert reported.args[0] == "Sensor positions could not be detected."
     bar = moved.bar()

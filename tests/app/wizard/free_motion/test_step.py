@@ -27,7 +27,7 @@ from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.free_motion.test_side_question import chains
-from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import PatientTime
 from tests.app.wizard.pressing import press
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -47,7 +47,7 @@ def step(
     step.page.show()
     yield step
     step.leave()
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording)
     visit.evaluation.finish()
 
 
@@ -56,7 +56,7 @@ def ticks(qtbot: QtBot, step: FreeMotionStep, until: Callable[[], bool]) -> None
         step.tick()
         return until()
 
-    qtbot.waitUntil(reached, timeout=PATIENCE_MS)
+    qtbot.waitUntil(reached)
 
 
 def states(page: FreeMotionPage) -> set[GaugeState]:
@@ -77,7 +77,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     ticks(qtbot, step, lambda: knows(step))
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     show_message(step, worn, FreeMotionState(closed))
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(step.done):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
         assert verb is not None
@@ -114,7 +114,7 @@ def test_stopping_early_states_its_price_and_goes_on(qtbot: QtBot, step: FreeMot
     assert bar.primary is not None
     assert (bar.primary.text, bar.primary.is_requested) == ("Stop early", False)
     assert bar.note
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(step.done):
         assert step.on_intent(SPACE)
     assert visit.recordings.free_motion is not None
     assert step.state is StepState.ATTENTION
@@ -151,9 +151,9 @@ def test_a_replay_without_free_motion_states_so_and_what_did_not_move_does_not_c
         qtbot, step, lambda: step.page.band.hint.sentence == "Replay has no free motion" and bool(step._motion.joints)
     )
     assert [verb.text for verb in step.bar().others] == []
-    with qtbot.waitSignals([step.done, step.reported], timeout=PATIENCE_MS, order="strict"):
+    with qtbot.waitSignals([step.done, step.reported], order="strict"):
         press(step)
-    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.recordings.free_motion is None)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
@@ -174,14 +174,14 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(step.done):
         press(step)
     left = step.page.gauges[Joint.LEFT_KNEE].face.centre
     press(step, "Repeat right")
     ticks(qtbot, step, lambda: visit.recordings.has_begun and knows(step))
     patient_time.wait(qtbot, 1.0)
     assert step.page.gauges[Joint.LEFT_KNEE].face.centre == left
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         press(step)
     repeated = visit.recordings.free_motion
     assert repeated is not None
@@ -195,10 +195,10 @@ def test_leaving_before_a_leg_has_moved_is_stated_and_does_not_count(
 ) -> None:
     step.enter()
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
-    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
+    with qtbot.waitSignal(step.reported) as reported:
         step.leave()
     assert reported.args[0] == "Free motion was left before a leg moved, so it is not used."
-    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.recordings.free_motion is None)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
@@ -208,7 +208,7 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
+    with qtbot.waitSignal(step.reported) as reported:
         step.leave()
     assert reported.args[0].startswith("Free motion was left early. It is still used")
     kept, note = visit.recordings.free_motion, step.note
@@ -222,10 +222,10 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     assert not visit.recordings.is_recording
     press(step, "Record again")
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
+    with qtbot.waitSignal(step.reported) as reported:
         step.leave()
     assert reported.args[0] == "Free motion was left early. The previous one still applies."
-    qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept)
     assert visit.recordings.free_motion is not None
     assert visit.recordings.free_motion.id == kept.id
     assert step.note == note
@@ -247,7 +247,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     assert Sound.READY in received
     received.clear()
     show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):  # more motion would not make it one
+    with qtbot.waitSignal(step.done):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
         assert step.page.band.hint.sentence == "Left knee: not a hinge"
     assert step.note == "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
@@ -274,7 +274,7 @@ def test_the_knee_above_a_transtibial_prosthesis_is_none_that_has_to_be_a_hinge(
     assert right.face.axis is not None
     assert left.face.axis.required == right.face.axis.required == "1.5°"
     show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(step.done):
         ticks(qtbot, step, lambda: left.face.state is GaugeState.ENOUGH)
     assert step.note == "enough movement"
 
@@ -311,9 +311,9 @@ def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_nex
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     show_message(step, worn, FreeMotionState(closed))
     ticks(qtbot, step, lambda: step._settled.isActive())
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(SPACE)
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording)
     note = step.note
     step.on_intent(SPACE)  # another
     for _ in range(6):
@@ -328,7 +328,7 @@ def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_nex
     for _ in range(6):
         step.tick()
     assert step.note == note  # no leg moved, so the one before it stays in force
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         pass
 
 
@@ -356,7 +356,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
     visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
     press(step)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(step.done):
         press(step)
 
     def is_corrected() -> bool:
@@ -364,7 +364,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
         placement = recording.stored.placement if recording is not None else None
         return placement is not None and placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
-    qtbot.waitUntil(is_corrected, timeout=PATIENCE_MS)
+    qtbot.waitUntil(is_corrected)
 
 
 @pytest.mark.parametrize(
@@ -385,7 +385,7 @@ def test_sensors_that_are_mixed_up_are_detected_and_one_key_puts_them_right(
     assert visit.sensors.site_of == worn
     assert visit.recordings.is_recording
     ticks(qtbot, step, lambda: knows(step))
-    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(step.done):
         press(step)
     assert not step.is_in_doubt
 
@@ -397,9 +397,9 @@ def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_lib
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
     press(step)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         visit.close()
-    qtbot.waitUntil(lambda: visit.is_idle, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.is_idle)
     assert visit.session is not None
     assert controller.state is not None
     (stored,) = controller.state.library.library.sessions.get(visit.session.id).recordings

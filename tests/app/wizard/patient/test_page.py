@@ -272,7 +272,7 @@ def test_the_last_visit_can_be_had_again(page: PatientPage, qtbot: QtBot) -> Non
     page.show_last_visit(LastVisit("Last visit, 24 October 2026", (("Walks", "A, B"), ("Zero", "all 0°"))))
     page.show_last_visit(LastVisit("Last visit, 1 November 2026", (("Walks", "C"),)))
     assert button.isVisible()
-    with qtbot.waitSignal(page.same_set_up_pressed, timeout=1000):
+    with qtbot.waitSignal(page.same_set_up_pressed):
         QTest.keyClick(button, Qt.Key.Key_Space)
 
 

@@ -42,7 +42,7 @@ def test_going_on_waits_until_the_library_has_the_patient(qtbot: QtBot, visit: V
     assert not verb.is_enabled
     type_in(step, Patient(code="DEMO-7", prosthetic_side="left"))
     assert step.note == "Left prosthetic"
-    with qtbot.waitSignal(step.done, timeout=5000):
+    with qtbot.waitSignal(step.done):
         press(step)
     assert visit.patient.stored is not None
     assert step.state is StepState.DONE
@@ -54,27 +54,27 @@ def test_a_code_in_use_stops_and_offers_that_patient(
 ) -> None:
     controller.run(make, None, None, step)
     type_in(step, Patient(code="demo-8"))
-    with qtbot.waitSignal(visit.patient.code_taken, timeout=5000), qtbot.assertNotEmitted(step.done):
+    with qtbot.waitSignal(visit.patient.code_taken), qtbot.assertNotEmitted(step.done):
         press(step)
     assert step.page.code.is_wrong
     assert step.bar().note == "Not saved: demo-8 is another patient's code."
-    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+    with qtbot.waitSignal(visit.patient.changed):
         step.page.open_pressed.emit("demo-8")
     assert step.page.draft.patient.birth_year == 1950
     qtbot.waitUntil(lambda: not step.page.code.is_wrong)
-    with qtbot.waitSignal(step.done, timeout=5000):
+    with qtbot.waitSignal(step.done):
         press(step)
 
 
 def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, step: PatientStep) -> None:
     type_in(step, Patient(code="DEMO-9"))
     assert step.bar().note == "Not saved yet."  # half a code is nobody's
-    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+    with qtbot.waitSignal(visit.patient.changed):
         step.page.code.committed.emit()
     assert step.bar().note == "Saved as you type."
     type_in(step, Patient(code="DEMO-9", mass_kg=82.0, device="knee K2  "))
     assert step.bar().note == "Not saved yet."
-    qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=5000)
+    qtbot.waitUntil(lambda: visit.patient.is_saved)
     assert step.bar().note == "Saved as you type."
     assert visit.patient.stored is not None
     assert visit.patient.stored.details.mass_kg == 82.0
@@ -87,15 +87,13 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
     controller.run(make_with_visit, None, None, step)
     step.page.open_pressed.emit("DEMO-10")
     button = next(one for one in step.page.findChildren(QAbstractButton) if one.text() == "Use last visit's set-up")
-    qtbot.waitUntil(button.isVisible, timeout=5000)
+    qtbot.waitUntil(button.isVisible)
     stated = {label.text() for label in step.page.findChildren(QLabel)}
     assert {"Last visit, 24 Oct 2026", "barefoot", "left knee 15°, others 0°", "0A09, 0A31"} <= stated
-    with qtbot.waitSignal(step.done, timeout=5000):
+    with qtbot.waitSignal(step.done):
         button.click()
     assert visit.placement_before == {"0A09": Site.LEFT_THIGH, "0A31": Site.LEFT_SHANK}
-    qtbot.waitUntil(
-        lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.details.zero_rad, timeout=5000
-    )
+    qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.details.zero_rad)
     assert np.rad2deg(visit.details.zero_rad[Joint.LEFT_KNEE]) == pytest.approx(15.0)
 
 
@@ -113,9 +111,9 @@ def test_enter_takes_the_set_up_of_the_last_visit_and_without_one_goes_on_to_att
         assert primary is not None
         return primary.text, primary.key
 
-    qtbot.waitUntil(lambda: offered() == ("Use last visit's set-up", "Enter"), timeout=5000)
+    qtbot.waitUntil(lambda: offered() == ("Use last visit's set-up", "Enter"))
     assert [(one.text, one.key) for one in step.bar().others] == [("Attach sensors", "")]
-    with qtbot.waitSignal(step.done, timeout=5000):
+    with qtbot.waitSignal(step.done):
         press(step)
     assert visit.placement_before == {"0A09": Site.LEFT_THIGH, "0A31": Site.LEFT_SHANK}
 
@@ -159,13 +157,13 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_again(
         listed.append(stored)
 
     controller.run(change, None, None, step)
-    qtbot.waitUntil(lambda: bool(listed), timeout=5000)
+    qtbot.waitUntil(lambda: bool(listed))
     visit.patient.choose_from_list(listed[0])
     step.enter()
     assert step.page.draft.patient.birth_year == 1966
     type_in(step, replace(listed[0].details, mass_kg=70.0))  # before the library has answered
     assert not visit.patient.is_saved
-    with qtbot.waitSignal(step.done, timeout=5000):
+    with qtbot.waitSignal(step.done):
         press(step)
     stored = visit.patient.stored
     assert stored is not None
@@ -182,11 +180,11 @@ def test_another_patient_chosen_while_the_first_is_read_again_is_the_one(
         made.extend(opened.library.patients.create(Patient(code=code)) for code in ("DEMO-11", "DEMO-12"))
 
     controller.run(make_two, None, None, step)
-    qtbot.waitUntil(lambda: len(made) == 2, timeout=5000)
+    qtbot.waitUntil(lambda: len(made) == 2)
     visit.patient.choose_from_list(made[0])
     visit.patient.choose(made[1])
     step.enter()
-    with qtbot.waitSignal(step.done, timeout=5000):
+    with qtbot.waitSignal(step.done):
         press(step)
     assert visit.patient.stored == made[1]
-    qtbot.waitUntil(lambda: visit.session is not None and visit.session.patient_id == made[1].id, timeout=5000)
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.patient_id == made[1].id)

@@ -58,7 +58,7 @@ def test_more_room_asks_for_finer_pictures_and_less_for_none(qtbot: QtBot, page:
 @pytest.mark.parametrize("number", [0, 1, 3])
 def test_a_small_page_that_is_pressed_brings_that_page_into_sight(qtbot: QtBot, page: ReportPage, number: int) -> None:
     page.show_pages([png(40.0)] * 4)
-    qtbot.waitUntil(lambda: page.reading.verticalScrollBar().maximum() > 0, timeout=5000)
+    qtbot.waitUntil(lambda: page.reading.verticalScrollBar().maximum() > 0)
     page.small.mark(2)
     at = page.small.place_of(number).center().toPoint()
     QTest.mouseClick(page.small, Qt.MouseButton.LeftButton, pos=at)

@@ -37,8 +37,6 @@ from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
 from tests.simulated import analysis_of
 
-WAIT_MS = 60_000  # on a busy machine
-
 
 @pytest.fixture(scope="module")
 def analysis(simulated_session: Session) -> Analysis:
@@ -71,14 +69,14 @@ def step(
 
     monkeypatch.setattr(step.page.report, "show_visits", noted)
     step.enter()
-    qtbot.waitUntil(lambda: bool(read), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(read))
     yield step
     step.leave()
 
 
 def test_pages_are_shown_and_made_again_with_the_words(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     sheets = step.page.report.sheets
-    qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sheets.count >= 4)
     step.page.report.comment.setPlainText("Keep alignment C.")
     step.leave()
     assert step.comment == "Keep alignment C."
@@ -86,14 +84,14 @@ def test_pages_are_shown_and_made_again_with_the_words(qtbot: QtBot, step: Repor
     assert state is not None
     assert session is not None
     sessions, session_id = state.library.library.sessions, session.id
-    qtbot.waitUntil(lambda: sessions.get(session_id).comment == "Keep alignment C.", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sessions.get(session_id).comment == "Keep alignment C.")
 
 
 def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_with_who_confirmed_it(
     qtbot: QtBot, step: ReportStep, visit: Visit
 ) -> None:
     editor = step.page.report.editor
-    qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT)
     draft = editor.words
     assert "knee" in draft.lower()
     assert (request_of(step).comment, request_of(step).comment_by) == ("", "")
@@ -108,7 +106,7 @@ def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_wit
     assert (request_of(step).comment, request_of(step).comment_by) == (draft, by)
     assert editor.note.text() == f"Confirmed by {by}. Printed on page one."
     sessions, session_id = state.library.library.sessions, session.id
-    qtbot.waitUntil(lambda: sessions.get(session_id).comment == draft, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sessions.get(session_id).comment == draft)
     assert is_confirmed(draft, sessions.get(session_id).comment_confirmed)
 
 
@@ -132,7 +130,7 @@ def test_words_changed_after_they_were_confirmed_are_not_printed_until_they_are_
 
 def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot: QtBot, step: ReportStep) -> None:
     editor = step.page.report.editor
-    qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT)
     editor.field.setPlainText("")
     editor.flush()
     step.comments.take_draft("Another draft.")
@@ -147,7 +145,7 @@ def test_a_confirmation_that_the_library_refuses_prints_nothing(
 
     monkeypatch.setattr(SharedEdits, "session", refuse)
     step.page.report.editor.field.setPlainText("Keep alignment C.")
-    with qtbot.waitSignal(visit.record.refused, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.record.refused):
         step.page.report.editor.button.click()
     assert request_of(step).comment == ""
 
@@ -168,7 +166,7 @@ def test_save_report_writes_one_pdf_and_nothing_beside_it(
     out = tmp_path / "report.pdf"
     save: Callable[[str], None] = step.save_report
     save(str(out))
-    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.state is StepState.DONE)
     assert [file.name for file in tmp_path.iterdir() if file.name != "library"] == ["report.pdf"]
     assert out.read_bytes().startswith(b"%PDF-")
     state, session = visit.controller.state, visit.session
@@ -189,7 +187,7 @@ def test_a_report_replaces_no_other_file_and_is_not_written_into_the_library(
     step.reported.connect(lambda what, _remedy: reported.append(what))
     save: Callable[[str], None] = step.save_report
     for out in (other, state.library.folder / "report.pdf"):
-        with qtbot.waitSignal(step.reported, timeout=WAIT_MS):
+        with qtbot.waitSignal(step.reported):
             save(str(out))
     assert reported == ["This already exists and is not a PDF.", "This lies inside the library."]
     assert other.read_text() == "no PDF"
@@ -203,7 +201,7 @@ def test_the_letter_is_exported_where_it_was_chosen(
     chosen: Callable[[str], None] = step.save_in
     step.page.report.formats.choose(["letter"])
     chosen(str(tmp_path / "results"))
-    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None)
     name = report_name(visit).removesuffix(".pdf")
     assert {file.name for file in (tmp_path / "results").iterdir()} == {
         *(f"{name}.pdf", f"{name}_letter.pdf", "results.xlsx")
@@ -228,7 +226,7 @@ def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
     press(step, "Patient letter")
     assert asked == [f"{report_name(visit).removesuffix('.pdf')}_letter"]
     step.letter_printer.confirmed.emit()
-    qtbot.waitUntil(lambda: bool(drawn), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(drawn))
     assert drawn == [("de", PRINTED_PPI)]
     state, session = visit.controller.state, visit.session
     assert state is not None
@@ -250,7 +248,7 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit
     step.page.report.formats.choose(["csv"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
-    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None)
     assert reported == [("", "")]
     assert [file.name for file in out.glob("*.pdf")] == [report_name(visit)]
     assert (out / report_name(visit)).read_bytes().startswith(b"%PDF-")
@@ -259,10 +257,10 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit
     assert step.bar().note == "Saved as results."
     save: Callable[[str], None] = step.save_report
     save(str(tmp_path / "first.pdf"))
-    qtbot.waitUntil(lambda: step.saved is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.saved is not None)
     assert step.bar().note == "Saved as first.pdf."
     chosen(str(tmp_path / "more"))
-    qtbot.waitUntil(lambda: step.exported == tmp_path / "more", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported == tmp_path / "more")
     assert step.bar().note == "Saved as more."
 
 
@@ -276,7 +274,7 @@ def test_a_file_that_was_not_written_is_named_with_its_reason(
     step.page.report.formats.choose(["mot"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
-    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None)
     assert reported == [("Not every file was written.", lines[0])]
 
 
@@ -294,15 +292,15 @@ def test_what_is_printed_is_in_the_audit_before_a_page_is_made(
         return []
 
     monkeypatch.setattr(ReportPreview, "pages", pages)
-    qtbot.waitUntil(step.can_save, timeout=WAIT_MS)
+    qtbot.waitUntil(step.can_save)
     step.printer.confirmed.emit()
-    qtbot.waitUntil(lambda: bool(noted), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(noted))
     assert noted[-1][-1] == Action.PRINT
 
 
 def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
     """What is asked before files without a name are saved."""
-    qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is not None)
     dialog = step.page.findChild(LeavingDialog)
     assert isinstance(dialog, LeavingDialog)
     return dialog
@@ -332,13 +330,13 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     dialog.typed.buttons[0].click()
     assert dict(dialog.shown)["device"] == "Qx1 knee"
     dialog.go.click()
-    qtbot.waitUntil(lambda: step.dialog is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.dialog is not None)
     assert step.dialog is not None
     step.dialog.close()
     out = tmp_path / "results"
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
-    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None)
     with zipfile.ZipFile(out / "gaitwright.xlsx") as book:
         stated = b"".join(book.read(name) for name in book.namelist()).decode()
     assert shown["patient"] in stated
@@ -375,7 +373,7 @@ def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     press(step, "Export data")
     dialog = dialog_of(qtbot, step)
     dialog.cancel.click()
-    qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None)
     assert step.dialog is None
 
 
@@ -398,16 +396,16 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     opened.library.settings.put(CLINIC, "Clinic North")
     step.enter()
     report = step.page.report
-    qtbot.waitUntil(lambda: report.earlier.count() == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: report.earlier.count() == 2)
     assert report.earlier.isVisible()
     report.earlier.setCurrentIndex(1)
     report.earlier.activated.emit(1)
     assert report.chosen_visit == earlier_id
     assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # nothing is saved yet, so it is there
-    qtbot.waitUntil(lambda: step.bar().primary.is_enabled, timeout=WAIT_MS)  # type: ignore[union-attr]  # it is still there
+    qtbot.waitUntil(lambda: step.bar().primary.is_enabled)  # type: ignore[union-attr]  # it is still there
     chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
-    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None)
     text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / report_name(visit)).pages)
     assert "Comparison of visits" in text
     assert "1 Mar 2020" in text
@@ -422,7 +420,7 @@ def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
 ) -> None:
     sheets, reported = step.page.report.sheets, []
     step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
-    qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sheets.count >= 4)
 
     def fail(*_: object) -> None:
         raise KeyError("no such column")
@@ -430,11 +428,11 @@ def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
     with monkeypatch.context() as broken:
         broken.setattr(ReportPreview, "pages", fail)
         step.page.report.options_changed.emit()
-        qtbot.waitUntil(lambda: bool(reported), timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: bool(reported))
     assert sheets.count == 0
     assert reported[-1] == ("The report cannot be shown.", "See the log for details.")
     step.page.report.options_changed.emit()
-    qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sheets.count >= 4)
     assert reported[-1] == ("", "")
 
 
@@ -447,16 +445,16 @@ def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparis
     monkeypatch.setattr("app.wizard.report.step.read_analysed", refuse)
     report, reported = step.page.report, []
     step.reported.connect(lambda what, _remedy: reported.append(what))
-    qtbot.waitUntil(lambda: report.sheets.count >= 4, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: report.sheets.count >= 4)
     report.show_visits([(uuid4(), "1 Jul 2026")])
     report.earlier.setCurrentIndex(1)
     report.earlier.activated.emit(1)
-    qtbot.waitUntil(lambda: bool(reported), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(reported))
     assert report.sheets.count == 0
     assert not step.can_save()
     report.earlier.setCurrentIndex(0)
     report.earlier.activated.emit(0)
-    qtbot.waitUntil(lambda: report.sheets.count >= 4, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: report.sheets.count >= 4)
     assert step.can_save()
 
 

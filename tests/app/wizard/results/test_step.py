@@ -62,7 +62,7 @@ def session_id(qtbot: QtBot, controller: LibraryController, one_walk: Session) -
 @pytest.fixture
 def step(qtbot: QtBot, qapp: QApplication, visit: Visit, session_id: UUID) -> ResultsStep:
     step = ResultsStep(visit)
-    with qtbot.waitSignals([visit.resumed, visit.evaluation.done], timeout=30_000):
+    with qtbot.waitSignals([visit.resumed, visit.evaluation.done]):
         visit.resume(session_id)
     qtbot.addWidget(step.page)
     step.page.set_room(1064, 672)
@@ -80,7 +80,7 @@ def walk_of(visit: Visit) -> RecordingAnalysis:
 
 def wait_for(qtbot: QtBot, visit: Visit, count: int) -> None:
     """Until so many of the left side's strides are left out by hand."""
-    qtbot.waitUntil(lambda: left_out_by_hand(walk_of(visit).gait[Side.LEFT]) == count, timeout=10_000)
+    qtbot.waitUntil(lambda: left_out_by_hand(walk_of(visit).gait[Side.LEFT]) == count)
 
 
 def angle_of(visit: Visit, joint: Joint) -> FloatArray:
@@ -121,13 +121,13 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
     press(step, "Correct")
     page = step.page.correct()
     assert step.page.currentWidget() is page
-    with qtbot.waitSignal(step.offered), qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(step.offered), qtbot.waitSignal(visit.evaluation.done):
         page.joint_rows[Joint.LEFT_KNEE].turned.click()
     np.testing.assert_allclose(angle_of(visit, Joint.LEFT_KNEE), -before, atol=1e-9)
     analysis = visit.evaluation.analysis
     assert analysis is not None
     assert "sign_turned" in {finding.key for finding in analysis.findings}
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         step.undo()
     np.testing.assert_allclose(angle_of(visit, Joint.LEFT_KNEE), before)
 
@@ -144,23 +144,23 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     assert row.condition.line_edit.accessibleName() == "Condition of walk 1"
     with (
         qtbot.waitSignal(step.offered) as offered,
-        qtbot.waitSignal(visit.evaluation.done, timeout=30_000),
+        qtbot.waitSignal(visit.evaluation.done),
     ):
         row.kept.click()
     assert offered.args == ["Walk 1 is excluded."]
     assert visit.evaluation.analysis is not None
     assert not any(recording.gait for recording in visit.evaluation.analysis.recordings)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         step.undo()
     assert walk_of(visit).gait
     ((key, _),) = step.page.correct().walk_rows.items()
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         step.page.correct().condition_typed.emit(key, "AFO")
     assert row.condition.line_edit.accessibleName() == "Condition of A AFO"
     stated: list[str] = []
     step.offered.connect(stated.append)
     for is_kept in (False, True):
-        with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        with qtbot.waitSignal(visit.evaluation.done):
             step.page.correct().kept_turned.emit(key, is_kept)
     assert stated == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
@@ -171,7 +171,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
 
 def test_an_earlier_visit_is_compared_as_worn_again(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     compare = step.page.results().compare
-    with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
+    with qtbot.waitSignal(visit.earlier_read):
         compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
     found = compare.comparison
     assert found is not None
@@ -188,7 +188,7 @@ def test_the_last_visit_is_read_from_the_library_and_drawn_thin(qtbot: QtBot, vi
     """Without that anybody asks for it."""
     results = step.page.results()
     knee = results.cycles.charts.knee
-    qtbot.waitUntil(lambda: bool(knee.chart.described.beside), timeout=60_000)
+    qtbot.waitUntil(lambda: bool(knee.chart.described.beside))
     assert results.thin.currentData() is ThinLine.LAST_VISIT
     assert knee.key.words.thin
     results.thin.turn()
@@ -213,16 +213,16 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     assert page is not None
     assert step.page.currentWidget() is page
     assert not step.bar().has_back
-    qtbot.waitUntil(page.save.isEnabled, timeout=30_000)
+    qtbot.waitUntil(page.save.isEnabled)
     page.joints.choose(str(Joint.RIGHT_ANKLE))
     assert not page.save.isEnabled()
-    qtbot.waitUntil(page.save.isEnabled, timeout=30_000)
+    qtbot.waitUntil(page.save.isEnabled)
     page.save.click()
     dialog = page.findChild(QFileDialog)
     assert dialog is not None
     # its files name no patient, so neither does their folder
     assert [Path(one).name for one in dialog.selectedFiles()] == ["session_how-found"]
-    with qtbot.waitSignal(step.reported, timeout=10_000):
+    with qtbot.waitSignal(step.reported):
         dialog.fileSelected.emit(str(tmp_path / "how"))
     dialog.close()
     assert "how" in page.note.text()
@@ -239,12 +239,12 @@ def test_swapped_sides_are_read_again_and_swapped_back(qtbot: QtBot, visit: Visi
     strides = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
     left, right = angle_of(visit, Joint.LEFT_KNEE), angle_of(visit, Joint.RIGHT_KNEE)
     press(step, "Correct")
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         step.page.correct().swap.click()
     swapped = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
     assert swapped == {Side.LEFT: strides[Side.RIGHT], Side.RIGHT: strides[Side.LEFT]}
     np.testing.assert_allclose(np.nanmax(angle_of(visit, Joint.LEFT_KNEE)), np.nanmax(right), atol=0.02)
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    with qtbot.waitSignal(visit.evaluation.done):
         step.undo()
     np.testing.assert_allclose(np.nanmax(angle_of(visit, Joint.LEFT_KNEE)), np.nanmax(left), atol=0.02)
 
@@ -266,7 +266,7 @@ def test_what_is_stated_of_the_legs_afterwards_is_in_the_results_when_they_are_l
     ):
         visit.patient.edit(replace(visit.patient.details, **change))
         step.leave()
-        with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        with qtbot.waitSignal(visit.evaluation.done):
             step.enter()
         assert nature() is found
     assert len(computed) == 2
@@ -323,7 +323,7 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
 
     again = Visit(controller, [])
     again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
-    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
+    with qtbot.waitSignals([again.resumed, again.evaluation.done]):
         again.resume(session_id)
     assert left_out_by_hand(walk_of(again).gait[Side.LEFT]) == 2
     assert again.evaluation.analysis is not None
@@ -376,10 +376,10 @@ def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
     (chooser,) = page.findChildren(QFileDialog)
     chooser.filesSelected.emit([str(reference)])
     chooser.close()
-    qtbot.waitUntil(lambda: page.sheets.count > 0, timeout=60_000)
+    qtbot.waitUntil(lambda: page.sheets.count > 0)
     page.save.click()
     dialog = page.findChildren(QFileDialog)[-1]
-    with qtbot.waitSignal(step.reported, timeout=20_000):
+    with qtbot.waitSignal(step.reported):
         dialog.fileSelected.emit(str(tmp_path / "agreed"))
     dialog.close()
     assert page.note.text() == "Saved in agreed."

@@ -17,10 +17,11 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
+from app.importing.untrusted_files import read_foreign_video
 from app.storage.journal.disk import JournalFile
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action, Role, StoredClip
-from app.storage.videos.reader import recording_opened_ns
+from app.storage.videos.reader import open_clips, recording_opened_ns
 from app.storage.videos.writer import ClipWriter
 from app.video import exporting
 from app.widgets.question_dialog import QuestionDialog
@@ -47,7 +48,6 @@ __all__ = ["one_walk", "session_id", "step"]  # fixtures
 pytestmark = pytest.mark.endurance
 
 FRAMES = 45  # as `write_video` makes them
-PATIENCE_MS = 60_000
 
 
 @pytest.fixture
@@ -64,11 +64,11 @@ def clip(qtbot: QtBot, controller: LibraryController, visit: Visit, step: Result
 
     found = asked(qtbot, controller, bring_in)
     assert isinstance(found, StoredClip)
-    with qtbot.waitSignal(visit.clips.changed, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.clips.changed):
         visit.clips.read()
-    with qtbot.waitSignal(visit.clips.changed, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.clips.changed):
         visit.clips.synchronise(found.id, Sync(0.0, 0.033, SyncBy.HAND))
-    qtbot.waitUntil(lambda: step.page.results().video.has_clips, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: step.page.results().video.has_clips)
     return found
 
 
@@ -136,10 +136,10 @@ def test_the_import_asks_for_consent_first(qtbot: QtBot, visit: Visit, step: Res
     press(step, "Import video")
     assert not step.page.findChildren(QFileDialog)
     dialog_of(step).answers["agrees"].click()
-    qtbot.waitUntil(lambda: visit.clips.has_consent, timeout=PATIENCE_MS)
-    qtbot.waitUntil(lambda: bool(step.page.findChildren(QFileDialog)), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.clips.has_consent)
+    qtbot.waitUntil(lambda: bool(step.page.findChildren(QFileDialog)))
     step.page.findChildren(QFileDialog)[0].filesSelected.emit([str(path)])
-    qtbot.waitUntil(lambda: step.page.results().video.has_clips, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: step.page.results().video.has_clips)
 
 
 def test_a_file_that_is_no_video_is_refused_and_leaves_nothing(
@@ -148,12 +148,12 @@ def test_a_file_that_is_no_video_is_refused_and_leaves_nothing(
     path = tmp_path / "walk.mp4"
     path.write_bytes(b"no video at all" * 1000)
     visit.clips.give_consent()
-    qtbot.waitUntil(lambda: visit.clips.has_consent, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.clips.has_consent)
     stated: list[tuple[str, str]] = []
     step.reported.connect(lambda *both: stated.append(both))
     press(step, "Import video")
     step.page.findChildren(QFileDialog)[0].filesSelected.emit([str(path)])
-    qtbot.waitUntil(lambda: len(stated) > 1, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: len(stated) > 1)
     assert "walk.mp4" in " ".join(stated[-1])
     state = visit.controller.state
     assert state is not None
@@ -167,7 +167,7 @@ def test_what_leaves_is_asked_about_written_and_noted(
     press(step, "Export video")
     dialog_of(step).answers["blurred"].click()
     dialog = step.page.findChildren(QFileDialog)[0]
-    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS, check_params_cb=lambda what, _: "is exported" in what):
+    with qtbot.waitSignal(step.reported, check_params_cb=lambda what, _: "is exported" in what):
         dialog.fileSelected.emit(str(tmp_path / "out.webm"))
     with av.open(str(tmp_path / "out.webm")) as written:
         assert len(list(written.decode(video=0))) == FRAMES
@@ -187,8 +187,8 @@ def test_a_deleted_video_is_gone_at_once(qtbot: QtBot, visit: Visit, clip: Store
     assert state is not None
     assert list(state.library.videos.glob("*.journal"))
     dialog_of(step).answers["delete"].click()
-    qtbot.waitUntil(lambda: not step.page.results().video.has_clips, timeout=PATIENCE_MS)
-    qtbot.waitUntil(lambda: not visit.clips.stored, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not step.page.results().video.has_clips)
+    qtbot.waitUntil(lambda: not visit.clips.stored)
     assert list(state.library.videos.glob("*.journal")) == []
 
 
@@ -264,16 +264,15 @@ def test_a_cameras_delay_is_found_by_the_motion(
     by_motion = [SyncBy.MOTION]
     qtbot.waitUntil(
         lambda: [clip.sync.by for clips in visit.clips.stored.values() for clip in clips if clip.sync] == by_motion,
-        timeout=120_000,
     )
     ((found,),) = visit.clips.stored.values()
     assert found.sync is not None
     assert abs(found.sync.offset_s + delay_s) < 2 / 30
     video = step.page.results().video
-    qtbot.waitUntil(lambda: video.has_clips, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: video.has_clips)
     step.page.results().show_video.click()
     stated = "Synchronised, ±1 frame"
-    qtbot.waitUntil(lambda: stated in [one.text for one in video.player.painted_texts()], timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: stated in [one.text for one in video.player.painted_texts()])
 
 
 def test_a_synchronisation_by_hand_stays_when_the_motion_is_found_later(
@@ -349,14 +348,14 @@ def test_an_import_that_fills_the_disk_is_reported_and_leaves_nothing(
 def test_a_lock_ends_an_import_and_its_half_is_gone(
     qtbot: QtBot, visit: Visit, step: ResultsStep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    read, pieces = videos.read_foreign_video, list[float]()
+    pieces = list[float]()
 
     def slow(path: Path, from_s: float, _most: int, waiting: Callable[[], None]) -> VideoPiece:
         pieces.append(from_s)
         for _ in range(6):
             time.sleep(0.05)
             waiting()
-        return read(path, from_s, 5, waiting)
+        return read_foreign_video(path, from_s, 5, waiting)
 
     monkeypatch.setattr(videos, "read_foreign_video", slow)
     stated = sentences_of(step)
@@ -405,7 +404,7 @@ def test_a_video_whose_file_is_gone_is_not_called_exported(
 def test_clips_that_come_under_the_lock_are_not_shown(
     qtbot: QtBot, clip: StoredClip, visit: Visit, step: ResultsStep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    held, open_clips = Held(), clips.open_clips
+    held = Held()
 
     def slow(opened: OpenedLibrary, session_id: UUID) -> object:
         found = open_clips(opened, session_id)

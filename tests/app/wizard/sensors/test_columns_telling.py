@@ -77,7 +77,7 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     primary = step.bar().primary
     assert primary is not None
     assert (primary.text, primary.is_enabled) == ("Use these columns", True)
-    with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
+    with qtbot.waitSignal(visit.refused) as refused:
         press(step)
     assert refused.args == ["Searched.", "again."]
     assert kept.known_columns() == {place: EMULATED, "/dev/other": EMULATED}

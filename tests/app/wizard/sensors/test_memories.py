@@ -22,7 +22,7 @@ from core.session import RecordingKind
 from devices.dot.messages import start_recording
 from devices.dot.samples import DRIVER
 from devices.emulators.dot import EmulatedDot
-from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots, rows_of
+from tests.app.wizard.emulated_dots import dot_choice, open_dots, rows_of
 from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -38,7 +38,7 @@ def choice(radio: FastRadio) -> SourceChoice:
 def opened(qtbot: QtBot, visit: Visit, step: SensorsStep) -> SensorsStep:
     """The step, its sensors open, worn and known to the library."""
     open_dots(qtbot, visit, step, 60)
-    with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.changed):
         visit.place_sensors()
     return step
 
@@ -62,7 +62,7 @@ def look(qtbot: QtBot, step: SensorsStep) -> None:
 def wait(qtbot: QtBot, step: SensorsStep) -> None:
     assert step.memories.is_busy
     assert step.cannot_leave == "The sensors are being queried. Wait until they have answered, or cancel."
-    qtbot.waitUntil(lambda: not step.memories.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not step.memories.is_busy)
     assert step.cannot_leave == ""
 
 
@@ -72,11 +72,11 @@ def walk_in_memory(qtbot: QtBot, visit: Visit, *, is_fetched: bool) -> None:
     assert sensors.acquisition is not None
     sensors.dots.make_ready_to_record()
     recordings.begin(sensors.acquisition, RecordingKind.WALKING, "Shoes")
-    qtbot.waitUntil(lambda: recordings.has_begun, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: recordings.has_begun)
     qtbot.wait(60)
     recordings.stop()
     if is_fetched:
-        qtbot.waitUntil(lambda: len(recordings.walks) == 1, timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: len(recordings.walks) == 1)
 
 
 @pytest.mark.endurance
@@ -87,7 +87,7 @@ def test_empty_memories_are_reported_and_live_comes_back(qtbot: QtBot, opened: S
     assert opened.page.memories.title == "The sensor memory is empty"
     assert visit.sensors.are_in_memory
     press(opened)
-    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle)
     assert opened.page.memories.isHidden()
     assert visit.sensors.dots is not None
     assert visit.sensors.dots.are_one_at(60), "they were not synchronised anew"
@@ -134,12 +134,12 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     recordings, last = visit.recordings, radio.dots[1].faults
     last.drops_export_after, last.unreachable_after_drop_s = [20], 1e6
     walk_in_memory(qtbot, visit, is_fetched=False)
-    qtbot.waitUntil(lambda: recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: recordings.fetches.failure[0] != "")
     recordings.fetch_later()
     recordings.close()
     assert recordings.in_sensors == ()
     visit.read_again()  # as a session that is gone on with is read
-    qtbot.waitUntil(lambda: len(recordings.walks) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(recordings.walks) == 1)
     assert [walk.details.is_kept for walk in recordings.walks] == [False]
     last.unreachable_until_ns = 0
     look(qtbot, opened)
@@ -149,7 +149,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     assert bar.primary.text == "Fetch walk"
     press(opened)
     wait(qtbot, opened)
-    qtbot.waitUntil(lambda: len(recordings.walks) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(recordings.walks) == 2)
     fetched = recordings.walks[1]
     assert fetched.details.condition == "Shoes"
     assert fetched.read_back is not None
@@ -215,7 +215,7 @@ def test_a_recording_is_found_by_the_second_in_which_it_was_begun(
         found.extend(known(library, one) for one in (utc_s, utc_s + 1))
 
     controller.run(ask, None, None, visit)
-    qtbot.waitUntil(lambda: len(found) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(found) == 2)
     assert [row.id for row in found[0].rows] == [walk.id]
     assert found[0].kept == frozenset({"DOT 0001", "DOT 0002"})
     assert found[0].lacking == frozenset()
@@ -240,6 +240,6 @@ def test_what_lacked_when_it_was_fetched_first_and_was_had_then_is_not_lacking(
     monkeypatch.setattr(dot_memories, "decode", fetched_before)
     found: list[KnownRecording] = []
     controller.run(lambda library: found.append(known(library, utc_s)), None, None, visit)
-    qtbot.waitUntil(lambda: len(found) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(found) == 1)
     assert found[0].kept == frozenset({"DOT 0001", "DOT 0002"})
     assert found[0].lacking == frozenset()

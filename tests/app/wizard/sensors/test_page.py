@@ -309,12 +309,12 @@ def test_without_a_source_five_are_offered_and_pressed_by_keys(page: SensorsPage
     page.show_no_source()
     assert [button.text() for button in page.nothing.buttons] == [option.name for option in OPTIONS[:5]]
     page.focus()
-    with qtbot.waitSignal(page.source_chosen, timeout=1000) as received:
+    with qtbot.waitSignal(page.source_chosen) as received:
         QTest.keyClick(page.nothing.buttons[0], Qt.Key.Key_Return)
     assert received.args == ["serial"]
     page.show_searching("Serial ports")
     assert page.searching.isVisible()
-    with qtbot.waitSignal(page.searching.stop.clicked, timeout=1000):
+    with qtbot.waitSignal(page.searching.stop.clicked):
         QTest.keyClick(page.searching.stop, Qt.Key.Key_Space)
 
 
@@ -327,9 +327,9 @@ def test_rows_keep_the_focus_while_they_are_shown_again(page: SensorsPage) -> No
 
 def test_a_silent_sensor_is_looked_for_and_a_received_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
     page.show_sensors(rows(*LEG_SITES, s0A22={"silent_s": 4.0}))
-    with qtbot.waitSignal(page.list.reconnect_pressed, timeout=1000):
+    with qtbot.waitSignal(page.list.reconnect_pressed):
         page.list.rows["0A22"].identify.click()
-    with qtbot.waitSignal(page.list.identify_pressed, timeout=1000):
+    with qtbot.waitSignal(page.list.identify_pressed):
         assert page.identify_selected()
 
 

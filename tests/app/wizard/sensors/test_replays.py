@@ -57,7 +57,7 @@ def test_a_folder_becomes_the_sensors_with_their_places(
     assert step.page.nothing.buttons[-1].text() == "Replay of a stored session"
     step.page.nothing.buttons[-1].click()
     assert step.page.stored.isVisible()
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         step.stored.replay_folder(folder)
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}, "as the folder tells it"
     assert visit.is_simulated, "it was not measured now"
@@ -80,13 +80,13 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
 ) -> None:
     stored(controller, short_session)
     step.page.source_chosen.emit(REPLAY)
-    qtbot.waitUntil(lambda: bool(step.page.stored.sessions.lines), timeout=5000)
+    qtbot.waitUntil(lambda: bool(step.page.stored.sessions.lines))
     (line,) = step.page.stored.sessions.lines
     assert (line.code, line.when, line.sessions) == ("P-7", "24 Oct 2026", "3 recordings")  # type: ignore[union-attr]  # lines of patients only
     bar = step.bar()
     assert bar.primary is not None
     assert (bar.primary.text, bar.primary.is_enabled) == ("Replay", True)
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         press(step)
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
     assert visit.sensors.choice is not None
@@ -101,7 +101,7 @@ def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: Se
     dialog = step.stored.dialog
     assert dialog is not None
     assert dialog.fileMode() is QFileDialog.FileMode.Directory
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         dialog.fileSelected.emit(str(folder))
         dialog.close()
 
@@ -111,12 +111,12 @@ def test_what_cannot_be_read_is_stated_in_the_page(
 ) -> None:
     step.page.source_chosen.emit(REPLAY)
     step.stored.replay_folder(tmp_path)
-    qtbot.waitUntil(lambda: "is not a session folder" in step.page.stored.notice.text, timeout=5000)
+    qtbot.waitUntil(lambda: "is not a session folder" in step.page.stored.notice.text)
     assert step.page.stored.isVisible()
     broken = shutil.copytree(folder, tmp_path / "broken")
     (broken / "walking" / "left_foot.csv").write_text("time_s,left\n1,2\n")
     step.stored.replay_folder(broken)
-    qtbot.waitUntil(lambda: "left_foot.csv" in step.page.stored.notice.text, timeout=5000)
+    qtbot.waitUntil(lambda: "left_foot.csv" in step.page.stored.notice.text)
     assert visit.sensors.acquisition is None
     step.page.stored.back.click()
     assert step.page.nothing.isVisible()
@@ -137,7 +137,7 @@ def test_whoever_chooses_other_sensors_meanwhile_has_those(
 ) -> None:
     step.page.source_chosen.emit(REPLAY)
     step.stored.replay_folder(folder)
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         step.page.source_chosen.emit("fast")
     assert step.page.list.isVisible()
     qtbot.wait(300)  # longer than it takes to read the folder

@@ -58,7 +58,7 @@ def test_the_list_is_there_at_once_and_grows(qtbot: QtBot) -> None:
     assert [one.key for one in sources] == [DEMONSTRATION, SEARCH, WITH_PELVIS]
     assert time.monotonic() - begin_s < 0.5
     may_end.set()
-    qtbot.waitUntil(lambda: len(sources) == 5, timeout=5000)
+    qtbot.waitUntil(lambda: len(sources) == 5)
     assert [one.key for one in sources] == [DEMONSTRATION, "ximu3", "witmotion", SEARCH, WITH_PELVIS]
     assert [one.name for one in sources][1:3] == [
         "x-io x-IMU3, 2 sensors",
@@ -120,7 +120,7 @@ def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.Monkey
     monkeypatch.setattr(sources_module, "_search", lambda: SearchResult((sensor("A"),)))
     monkeypatch.setattr(sources_module, "_networks", tuple)
     listed = choices()
-    qtbot.waitUntil(lambda: len(listed) == 4, timeout=5000)
+    qtbot.waitUntil(lambda: len(listed) == 4)
 
 
 def test_streams_are_asked_for_by_a_choice_only_that_states_whom(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -223,7 +223,7 @@ def test_sensors_that_have_to_be_set_up_are_reported_by_their_key(qtbot: QtBot) 
     def make() -> Acquisition:
         raise SetUpFirstError(MOVELLA_DOT)
 
-    with qtbot.waitSignal(sensors.set_up_required, timeout=5000) as required, qtbot.assertNotEmitted(sensors.refused):
+    with qtbot.waitSignal(sensors.set_up_required) as required, qtbot.assertNotEmitted(sensors.refused):
         sensors.search(SourceChoice(SEARCH, "Search", make))
     assert required.args == [MOVELLA_DOT]
     sensors.finish()

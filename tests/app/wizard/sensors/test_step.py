@@ -34,7 +34,7 @@ def source(simulated_session: Session) -> ReplaySource:
 
 
 def open_source(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         step.page.nothing.buttons[0].click()
     qtbot.waitUntil(lambda: len(visit.sensors.status) == 6)
     tick(step)
@@ -74,7 +74,7 @@ def test_sensors_are_placed_by_keys_and_reported_to_the_library(
     assert verb.is_requested
     with qtbot.waitSignal(step.done):
         press(step)
-    with qtbot.waitSignal(visit.changed, timeout=5000):
+    with qtbot.waitSignal(visit.changed):
         step.leave()
     assert visit.session is not None
     assert visit.session.placements[-1].site_of == worn
@@ -90,7 +90,7 @@ def test_traces_show_what_the_sensors_turned(qtbot: QtBot, visit: Visit, step: S
     shank = list(visit.sensors.status)[1]
     shown: list[dict[str, np.ndarray]] = []
     step.page.show_traces = shown.append  # type: ignore[method-assign, assignment]  # what the page is shown
-    qtbot.waitUntil(lambda: tick(step) or np.isfinite(shown[-1][shank]).sum() > 100, timeout=5000)
+    qtbot.waitUntil(lambda: tick(step) or np.isfinite(shown[-1][shank]).sum() > 100)
     assert {len(values) for values in shown[-1].values()} == {250}
 
 
@@ -101,7 +101,7 @@ def test_a_shaken_sensor_takes_the_place_that_is_next(
     step.page.ways.segments[1].click()
     foot = list(visit.sensors.status)[5]
     source.shake(foot)
-    qtbot.waitUntil(lambda: tick(step) or bool(visit.sensors.site_of), timeout=10_000)
+    qtbot.waitUntil(lambda: tick(step) or bool(visit.sensors.site_of))
     assert visit.sensors.site_of == {foot: Site.LEFT_THIGH}
 
 
@@ -112,14 +112,14 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
     visit.sensors.assign_all(worn)
     foot = visit.sensors.sensor_at[Site.RIGHT_FOOT]
     source.silence(foot)
-    qtbot.waitUntil(lambda: tick(step) or step.state is StepState.ATTENTION, timeout=10_000)
+    qtbot.waitUntil(lambda: tick(step) or step.state is StepState.ATTENTION)
     bar = step.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Reconnect R foot"
     assert [verb.text for verb in bar.others] == ["Go on without right ankle"]
     assert "R foot: no signal for" in step.page.notice.text
     source.wake(foot)
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+    with qtbot.waitSignal(visit.sensors.opened):
         press(step)
     assert visit.sensors.site_of == worn
     tick(step)
@@ -165,7 +165,7 @@ def test_the_source_of_the_last_visit_opens_and_the_page_goes_on_once_all_its_se
         tick(step)
         return bool(done)
 
-    qtbot.waitUntil(went_on, timeout=10_000)
+    qtbot.waitUntil(went_on)
     assert visit.sensors.site_of == worn
     for _ in range(REMEMBERED_LOOKS):
         tick(step)
@@ -176,7 +176,7 @@ def test_the_page_stays_where_a_sensor_of_the_last_visit_is_missing_or_another_s
     qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
 ) -> None:
     remember(visit, step, {**worn, "gone": Site.PELVIS})
-    qtbot.waitUntil(lambda: tick(step) or visit.sensors.acquisition is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: tick(step) or visit.sensors.acquisition is not None)
     with qtbot.assertNotEmitted(step.done):
         for _ in range(REMEMBERED_LOOKS):
             tick(step)
@@ -255,7 +255,7 @@ def test_what_is_refused_is_stated_in_the_users_language(qtbot: QtBot, visit: Vi
         raise SourceRefusedError("{place} is in use by another program", "Close that program", place="COM{7}")
 
     visit.known_choices = (SourceChoice("taken", "Taken", make),)
-    with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
+    with qtbot.waitSignal(visit.refused) as refused:
         step.page.source_chosen.emit("taken")
     what, remedy = refused.args
     assert what.startswith("[COM{7} ")
@@ -327,9 +327,9 @@ def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
     assert wizard.visit is not first
     assert wizard.visit is not None
     patient = wizard.visit.patient
-    qtbot.waitUntil(lambda: patient.details.code == code, timeout=5000)
+    qtbot.waitUntil(lambda: patient.details.code == code)
     assert (patient.stored is not None) is (code == "DEMO-1")
     assert wizard.visit.may_simulate
-    with qtbot.waitSignal(wizard.visit.changed, timeout=5000):
+    with qtbot.waitSignal(wizard.visit.changed):
         wizard.press_primary()
-    qtbot.waitUntil(lambda: isinstance(wizard.current, SensorsStep), timeout=5000)
+    qtbot.waitUntil(lambda: isinstance(wizard.current, SensorsStep))

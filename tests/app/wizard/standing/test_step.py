@@ -32,7 +32,7 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> Iterator[StandSti
     step.enter()
     yield step
     step.leave()
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording)
 
 
 def ticks(qtbot: QtBot, step: StandStillStep, until: Callable[[], bool]) -> None:
@@ -40,7 +40,7 @@ def ticks(qtbot: QtBot, step: StandStillStep, until: Callable[[], bool]) -> None
         step.tick()
         return until()
 
-    qtbot.waitUntil(reached, timeout=10_000)
+    qtbot.waitUntil(reached)
 
 
 def phase(step: StandStillStep) -> StandPhase:
@@ -58,7 +58,7 @@ def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStill
 def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
     qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
-    with qtbot.waitSignal(step.done, timeout=10_000):
+    with qtbot.waitSignal(step.done):
         assert step.on_intent(SPACE)
         ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
     standing = visit.recordings.standing
@@ -86,7 +86,7 @@ def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
     assert step.on_intent(SPACE)
     ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
     assert (step.state, step.note) == (StepState.TODO, "being loaded")
-    qtbot.waitUntil(lambda: visit.recordings.is_idle, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.is_idle)
     assert visit.recordings.standing is None
     assert (step.state, step.note) == (StepState.TODO, "")
     assert phase(step) is StandPhase.READY
@@ -123,8 +123,8 @@ def test_who_cannot_stand_is_not_recorded(qtbot: QtBot, step: StandStillStep, vi
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
     step.page.cannot_stand_pressed.emit()
     assert step.state is StepState.SKIPPED
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
-    qtbot.waitUntil(lambda: visit.recordings.standing is None, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.standing is None)
     with qtbot.waitSignal(step.done):
         press(step)
     step.page.can_stand_pressed.emit()
@@ -136,8 +136,8 @@ def test_leaving_during_the_count_keeps_nothing(qtbot: QtBot, step: StandStillSt
     step.on_intent(SPACE)
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
     step.leave()
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
-    qtbot.waitUntil(lambda: visit.recordings.standing is None, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.standing is None)
     assert not visit.rests
 
 

@@ -19,7 +19,7 @@ from core.session import RecordingKind
 from core.video.clip import Clip, Sync, SyncBy
 from devices.cameras.camera import TEST_PICTURE, V4L2, CameraInfo
 from tests.app.wizard.begun_visit import begin, record
-from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import PatientTime
 from tests.app.wizard.walking.shown_step import shown_step
 
 CAMERA = CameraInfo("Test picture", "testsrc2=size=640x360:rate=30", TEST_PICTURE)
@@ -52,46 +52,46 @@ def step(
 
 def switch_on(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     """With consent, until it sends."""
-    qtbot.waitUntil(lambda: step.page.camera.isVisible(), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: step.page.camera.isVisible())
     step.page.camera.switch.click()
     if not visit.clips.has_consent:
         step.page.camera.agree.click()
-    qtbot.waitUntil(lambda: bool(step.camera.feeds), timeout=PATIENCE_MS)
-    qtbot.waitUntil(lambda: all(feed.latest is not None for feed in step.camera.feeds), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: bool(step.camera.feeds))
+    qtbot.waitUntil(lambda: all(feed.latest is not None for feed in step.camera.feeds))
 
 
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, frames: int) -> None:
     """Until each camera has given so many frames of it."""
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: all(feed.taken >= frames for feed in step.camera.feeds), timeout=PATIENCE_MS)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    qtbot.waitUntil(lambda: all(feed.taken >= frames for feed in step.camera.feeds))
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
 
 
 def clips_of(qtbot: QtBot, visit: Visit, count: int = 1) -> list[StoredClip]:
-    qtbot.waitUntil(lambda: sum(map(len, visit.clips.stored.values())) >= count, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: sum(map(len, visit.clips.stored.values())) >= count)
     return [clip for clips in visit.clips.stored.values() for clip in clips]
 
 
 def test_without_a_camera_there_is_no_card(qtbot: QtBot, step: WalkingStep, cameras: list[CameraInfo]) -> None:
-    qtbot.waitUntil(lambda: step.page.camera.isVisible(), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: step.page.camera.isVisible())
     cameras.clear()
     step.camera.look()
-    qtbot.waitUntil(lambda: step.page.camera.isHidden(), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: step.page.camera.isHidden())
 
 
 def test_no_camera_runs_before_the_patient_agreed(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     card = step.page.camera
-    qtbot.waitUntil(card.isVisible, timeout=PATIENCE_MS)
+    qtbot.waitUntil(card.isVisible)
     assert (card.facts.text(), card.notice.isVisible()) == ("Camera is off.", False)
     card.switch.click()
     assert "has not agreed" in card.notice.text
     assert step.camera.feeds == ()
     card.agree.click()
-    qtbot.waitUntil(lambda: bool(step.camera.feeds), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: bool(step.camera.feeds))
     assert card.notice.text == "Faces are recorded. Video stays in this library."
-    qtbot.waitUntil(lambda: not card.pictures[0].pixmap().isNull(), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not card.pictures[0].pixmap().isNull())
     assert not card.pictures[1].isVisible()
     card.switch.click()
     assert step.camera.feeds == ()
@@ -117,27 +117,27 @@ def test_two_cameras_have_a_clip_each(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
-    qtbot.waitUntil(step.page.camera.isVisible, timeout=PATIENCE_MS)
+    qtbot.waitUntil(step.page.camera.isVisible)
     step.camera.choose_camera(2)
     switch_on(qtbot, step, visit)
     walk(qtbot, step, visit, frames=8)
     clips_of(qtbot, visit, 2)
     # both are looked into, though the second comes while the first is
-    qtbot.waitUntil(lambda: [clip.sync for clip in clips_of(qtbot, visit, 2)] == [FOUND, FOUND], timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: [clip.sync for clip in clips_of(qtbot, visit, 2)] == [FOUND, FOUND])
     found = clips_of(qtbot, visit, 2)
     assert [(clip.camera, clip.view) for clip in found] == [(1, "from the left"), (2, "from the right")]
 
 
 def test_a_camera_that_ends_costs_the_video_and_never_the_walk(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     switch_on(qtbot, step, visit)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     (feed,) = step.camera.feeds
-    qtbot.waitUntil(lambda: feed.taken >= 5, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: feed.taken >= 5)
     feed.kill()
-    qtbot.waitUntil(lambda: "goes on without video" in step.page.camera.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "goes on without video" in step.page.camera.notice.text)
     assert visit.recordings.is_recording
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     (stored,) = clips_of(qtbot, visit)
     assert stored.frames >= 5
@@ -156,7 +156,7 @@ def test_who_agrees_no_longer_has_no_video_left(qtbot: QtBot, step: WalkingStep,
     assert step.camera.dialog is not None
     assert visit.clips.stored  # until it is confirmed
     step.camera.dialog.answers["withdraw"].click()
-    qtbot.waitUntil(lambda: not visit.clips.stored, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.clips.stored)
     assert not visit.clips.has_consent
     state = visit.controller.state
     assert state is not None
@@ -181,7 +181,7 @@ def test_in_the_demonstration_nobodys_face_is_filmed(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its library lies plain on the disk."""
-    qtbot.waitUntil(step.page.camera.isVisible, timeout=PATIENCE_MS)
+    qtbot.waitUntil(step.page.camera.isVisible)
     shown = step.camera.shown
     assert shown is not None
     assert shown.cameras[:2] == ("Test picture", "Real one")
@@ -196,17 +196,17 @@ def test_a_full_disk_ends_the_video_and_never_the_walk(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     switch_on(qtbot, step, visit)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     (feed,) = step.camera.feeds
-    qtbot.waitUntil(lambda: feed.taken >= 3, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: feed.taken >= 3)
     assert "disk" not in step.page.camera.notice.text
     monkeypatch.setattr(ClipWriter, "has_ended", property(lambda _writer: True))
-    qtbot.waitUntil(lambda: "no space left for video" in step.page.camera.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "no space left for video" in step.page.camera.notice.text)
     assert feed.writer is None
     assert visit.recordings.is_recording
     clips_of(qtbot, visit)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
 
 
@@ -216,12 +216,12 @@ def test_a_walk_that_the_library_does_not_know_yet_has_no_video(
     switch_on(qtbot, step, visit)
     with monkeypatch.context() as without_row:
         without_row.setattr(Recorder, "has_row", property(lambda _recorder: False))
-        with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+        with qtbot.waitSignal(visit.recordings.begun):
             step.on_intent(RUN)
         assert "This walk has no video." in step.page.camera.notice.text
         (feed,) = step.camera.feeds
         assert feed.writer is None
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     walk(qtbot, step, visit, frames=3)  # the next has one, and nothing more is said of the first
     (stored,) = clips_of(qtbot, visit)

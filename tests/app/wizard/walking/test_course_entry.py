@@ -62,7 +62,7 @@ def test_laps_and_the_rest_are_the_tests(qtbot: QtBot, entry: CourseEntry) -> No
         (entry.rest, "7.5", PlannedTest(TWO, lap_m=20.0, typed_laps=6, rest_m=7.5)),
         (entry.length, "25", PlannedTest(TWO, lap_m=25.0, typed_laps=6, rest_m=7.5)),
     ):
-        with qtbot.waitSignal(entry.entered, timeout=1000):
+        with qtbot.waitSignal(entry.entered):
             write(field, text)
         assert entry.planned == planned
         entry.show_test(planned)
@@ -106,7 +106,7 @@ def test_enter_and_esc_leave_the_field_and_a_wrong_length_is_known(qtbot: QtBot)
     field.show()
     field.show_course(PlannedTest(UP))
     for key in (Qt.Key.Key_Return, Qt.Key.Key_Escape):
-        with qtbot.waitSignal(field.left, timeout=1000):
+        with qtbot.waitSignal(field.left):
             QTest.keyClick(field.field.line_edit, key)
     write(field.field, "4,5")
     assert (field.value, field.is_wrong) == (4.5, False)

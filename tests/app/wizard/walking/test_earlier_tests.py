@@ -49,10 +49,10 @@ def with_visits(*days: tuple[str, float, str]) -> Callable[[OpenedLibrary], UUID
 def read_control(qtbot: QtBot, visit: Visit, session_id: object) -> TimedControl:
     """Of a session that is taken up, once the earlier visits are read."""
     assert isinstance(session_id, UUID)
-    with qtbot.waitSignal(visit.resumed, timeout=10_000):
+    with qtbot.waitSignal(visit.resumed):
         visit.resume(session_id)
     control = TimedControl(visit, visit)
-    with qtbot.waitSignal(control.changed, timeout=10_000):
+    with qtbot.waitSignal(control.changed):
         control.earlier.read()
     return control
 
@@ -64,11 +64,11 @@ def test_the_latest_earlier_result_under_the_same_condition_is_named(
     later = ("2026-12-01", 1.0, SHOES)
     session_id = asked(qtbot, controller, with_visits(*days, later))
     assert isinstance(session_id, UUID)
-    with qtbot.waitSignal(visit.resumed, timeout=10_000):
+    with qtbot.waitSignal(visit.resumed):
         visit.resume(session_id)
     control = TimedControl(visit, visit)
     assert control.before(SHOES) == {}
-    with qtbot.waitSignal(control.changed, timeout=10_000):
+    with qtbot.waitSignal(control.changed):
         control.earlier.read()
     assert control.before(SHOES) == {UP: "3 Oct: 11.4\N{NO-BREAK SPACE}s"}
     assert control.before(STICK) == {UP: "20 Oct: 9.0\N{NO-BREAK SPACE}s"}

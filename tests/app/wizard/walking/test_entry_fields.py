@@ -155,7 +155,7 @@ def test_enter_in_a_field_is_done_with_it_and_presses_nothing(
     outer.show()
     for which in (fields.words.line_edit, fields.steppers["turns"]):
         which.setFocus()
-        with qtbot.waitSignal(fields.left, timeout=200, raising=False) as caught:
+        with qtbot.waitSignal(fields.left, raising=False) as caught:
             QTest.keyClick(which, Key.Key_Return)
         assert caught.signal_triggered is (which is fields.words.line_edit)
     assert passed_on == [Key.Key_Return]  # of the figure: the filled button's
@@ -249,7 +249,7 @@ def test_what_is_no_number_stays_while_the_change_is_entered_and_goes_with_it(
 
 def test_esc_in_a_field_is_done_with_it(qtbot: QtBot, fields: EntryFields) -> None:
     for field in (fields.words, fields.program, fields.setting_value):
-        with qtbot.waitSignal(fields.left, timeout=1000):
+        with qtbot.waitSignal(fields.left):
             QTest.keyClick(field.line_edit, Key.Key_Escape)
 
 

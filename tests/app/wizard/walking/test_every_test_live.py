@@ -21,7 +21,7 @@ from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.replay import DEMONSTRATION_NAMES
 from devices.simulation.walker import FreeMotion, Standing, Tissue, WalkerSettings
 from tests.app.wizard.begun_visit import begin
-from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import PatientTime
 from tests.app.wizard.walking.shown_step import shown_step
 
 RUN, NEXT_TEST, COURSE, LEAVE = map(
@@ -50,12 +50,12 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(RecordingKind.STANDING)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         visit.recordings.begin(acquisition, RecordingKind.STANDING)
     patient_time.wait(qtbot, 4.0)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         visit.recordings.stop()
-    qtbot.waitUntil(lambda: bool(rests_of(visit.recordings.every)), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: bool(rests_of(visit.recordings.every)))
     visit.rests = rests_of(visit.recordings.every)
     with shown_step(qtbot, visit, 660) as step:
         yield step
@@ -73,12 +73,12 @@ def _seconds(shown: str) -> float:
 def led(qtbot: QtBot, step: WalkingStep, visit: Visit, protocol: TimedProtocol, ends_at_s: float = 0.0) -> TimedTest:
     """Lead a test from Space to its result; one of minutes is ended by Space when so much has passed."""
     choose(step, protocol)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         assert step.on_intent(RUN)
         if ends_at_s:
-            qtbot.waitUntil(lambda: _seconds(step.page.timed.time.text) > ends_at_s, timeout=PATIENCE_MS)
+            qtbot.waitUntil(lambda: _seconds(step.page.timed.time.text) > ends_at_s)
             assert step.on_intent(RUN)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
     analysis = visit.evaluation.analysis
     assert analysis is not None
     found = analysis.recordings[-1].timed
@@ -132,7 +132,7 @@ def test_a_course_of_another_length_is_not_valid_until_the_length_is_put_right(
         view.entry.length.line_edit.selectAll()
         QTest.keyClicks(view.entry.length.line_edit, typed)
         QTest.keyClick(view.entry.length.line_edit, Qt.Key.Key_Return)
-        qtbot.waitUntil(partial(_shows, view, is_valid=is_valid), timeout=PATIENCE_MS)
+        qtbot.waitUntil(partial(_shows, view, is_valid=is_valid))
     assert view.first.text().startswith("Timed Up and Go: ")
 
 

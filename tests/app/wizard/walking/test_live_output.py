@@ -23,7 +23,7 @@ from app.wizard.walking.step import WalkingStep
 from core.body import LEG_JOINTS, Site
 from core.session import Patient, RecordingKind
 from tests.app.wizard.begun_visit import begin
-from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import PatientTime
 from tests.app.wizard.walking.shown_step import shown_step
 from tests.waiting import PATIENCE_S
 
@@ -49,23 +49,23 @@ def step(
 def calibrate(qtbot: QtBot, visit: Visit, patient_time: PatientTime) -> None:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(visit.evaluation.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.evaluation.done):
         for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
             acquisition.ask(kind)
-            with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+            with qtbot.waitSignal(visit.recordings.begun):
                 visit.recordings.begin(acquisition, kind)
             patient_time.wait(qtbot, seconds)
-            with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+            with qtbot.waitSignal(visit.recordings.ended):
                 visit.recordings.stop()
 
 
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, seconds: float) -> None:
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         assert step.on_intent(RUN)
     patient_time.wait(qtbot, seconds)
     assert step.page.output.isVisible()
     assert step.page.output.text().startswith("Live output is on: ")
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
 
 

@@ -13,7 +13,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
 from app.wizard.worn_sensors import SourceChoice
 from core.timed.protocols import TimedProtocol
-from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots
+from tests.app.wizard.emulated_dots import dot_choice, open_dots
 from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -33,7 +33,7 @@ def walking(qtbot: QtBot, visit: Visit, step: SensorsStep) -> Iterator[Callable[
 
     def enter(record_hz: int) -> WalkingStep:
         open_dots(qtbot, visit, step, record_hz)
-        with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
+        with qtbot.waitSignal(visit.changed):
             step.leave()
         one = WalkingStep(visit)
         qtbot.addWidget(one.page)
@@ -56,13 +56,13 @@ def texts(bar: BarState) -> tuple[str, list[str]]:
 def make_ready(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
     press(step)
     assert visit.sensors.sync.is_running
-    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle)
 
 
 def walk(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
     """Start a walk and stop it."""
     assert step.on_intent(RUN)
-    qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.recordings.has_begun)
     qtbot.wait(60)
     step.on_intent(RUN)
 
@@ -72,7 +72,7 @@ def walk_out_of_reach(qtbot: QtBot, visit: Visit, radio: FastRadio, step: Walkin
     radio.dots[1].faults.unreachable_after_drop_s = 1e6
     radio.dots[1].faults.drops_export_after = [20]
     walk(qtbot, visit, step)
-    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "")
 
 
 @pytest.mark.endurance
@@ -91,7 +91,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert step.cannot_leave == ""
     assert "First set them to send data live, on the Sensors step" in visit.cannot_calibrate
     step.on_intent(RUN)
-    qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.recordings.has_begun)
     assert step.page.memory.shown.title == "The sensors are recording to memory"
     assert step.page.figures.isHidden()
     recording = step.bar().recording
@@ -103,7 +103,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert "A walk is being fetched" in step.cannot_leave
     assert step.note == "being fetched"
     assert [row.state for row in step.page.rows] == [WalkState.IN_SENSORS]
-    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1)
     (fetched,) = visit.recordings.walks
     assert fetched.read_back is not None
     assert [len(block) for block in fetched.read_back.imu.values()] == [
@@ -114,7 +114,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert step.page.memory.isHidden()
     assert step.cannot_leave == ""
     step.memory.go_live()
-    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle)
     with qtbot.waitSignal(step.done):
         press(step, "Results")
 
@@ -134,7 +134,7 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     assert [one.name for one in visit.recordings.in_sensors] == ["walk 1"]
     radio.dots[1].faults.unreachable_until_ns = 0
     press(step, "Fetch 1 walk")
-    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1)
     assert "Fetch 1 walk" not in texts(step.bar())[1]
     (fetched,) = visit.recordings.walks
     assert fetched.read_back is not None
@@ -151,16 +151,16 @@ def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_is_before_it(
     make_ready(qtbot, visit, step)
     walk(qtbot, visit, step)
     step.page.memory.stop_pressed.emit()
-    qtbot.waitUntil(lambda: visit.recordings.fetches.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.recordings.fetches.is_idle)
     step.memory.send_live()
-    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: not visit.sensors.are_silent, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle)
+    qtbot.waitUntil(lambda: not visit.sensors.are_silent)
     walk(qtbot, visit, step)
-    qtbot.waitUntil(lambda: [one.details.name for one in visit.recordings.walks] == ["walk 2"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.details.name for one in visit.recordings.walks] == ["walk 2"])
     assert not visit.recordings.is_recording
     assert texts(step.bar())[1] == ["Fetch 1 walk", "Patient screen"]
     press(step, "Fetch 1 walk")
-    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 2)
     assert [one.details.name for one in visit.recordings.walks] == ["walk 1", "walk 2"]
 
 
@@ -173,7 +173,7 @@ def test_a_visit_that_is_left_with_a_walk_in_the_sensors_ends(
     walk_out_of_reach(qtbot, visit, radio, step)
     press(step, "Fetch later")
     visit.close()
-    qtbot.waitUntil(lambda: visit.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.is_idle)
 
 
 @pytest.mark.endurance
@@ -181,7 +181,7 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
     step = walking(60)
-    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle)
     assert texts(step.bar()) == ("Start walk", ["Patient screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
     assert "Choose no test, or record walks live" in step.bar().note
@@ -189,7 +189,7 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     step.on_intent(RUN)
     assert not visit.recordings.is_recording
     press(step, "Record walks live")
-    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle)
     assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
     assert texts(step.bar()) == ("Start Timed Up and Go", ["Patient screen"])
     assert "Timed tests need" not in step.bar().note
@@ -202,11 +202,11 @@ def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
     step = walking(120)
     radio.dots[1].faults.sync_results = [0x07] * 2
     press(step)
-    qtbot.waitUntil(lambda: visit.sensors.sync.failure[0] != "" and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.sensors.sync.failure[0] != "" and visit.sensors.sync.is_idle)
     assert step.page.memory.shown.what == "Not synchronised: DOT 0002 (clock rate differs too much)."
     assert texts(step.bar()) == ("Try again", ["Record walks live", "Patient screen"])
     press(step, "Record walks live")
-    qtbot.waitUntil(lambda: not visit.sensors.are_loose and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.sensors.are_loose and visit.sensors.sync.is_idle)
     assert texts(step.bar())[0] == "Start walk"
     assert step.page.memory.isHidden()
 
@@ -216,8 +216,8 @@ def test_sensors_strapped_again_are_live_before_they_stand_still(
     qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
 ) -> None:
     step = walking(60)
-    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle)
     assert visit.cannot_calibrate != ""
-    with qtbot.waitSignal(step.jumped, timeout=WAIT_MS):
+    with qtbot.waitSignal(step.jumped):
         step.page.walks.restrapped.click()
     assert visit.cannot_calibrate == ""

@@ -360,7 +360,7 @@ def test_the_samples_that_are_played_hold_one_tone_for_each_step_that_reached(
         return spans_s(samples, 48_000.0, 880.0)
 
     def wait_for(value: int, count: int) -> None:
-        qtbot.waitUntil(lambda: shown(feedback) == value and len(tones()) == count, timeout=10_000)
+        qtbot.waitUntil(lambda: shown(feedback) == value and len(tones()) == count)
 
     expected = 0
     for value in (54.4, 60.0, 50.0, 55.0, 54.5, 40.0, 61.0):

@@ -26,7 +26,7 @@ from core.session import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, TargetTally, tallies_of
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
-from tests.app.wizard.patient_time import BEHIND_S, PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import BEHIND_S, PatientTime
 from tests.app.wizard.pressing import press
 from tests.app.wizard.walking.shown_step import shown_step
 
@@ -47,21 +47,21 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
 def calibrate(qtbot: QtBot, visit: Visit, patient_time: PatientTime) -> None:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(visit.evaluation.done, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.evaluation.done):
         for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
             acquisition.ask(kind)
-            with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+            with qtbot.waitSignal(visit.recordings.begun):
                 visit.recordings.begin(acquisition, kind)
             patient_time.wait(qtbot, seconds)
-            with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+            with qtbot.waitSignal(visit.recordings.ended):
                 visit.recordings.stop()
 
 
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, seconds: float) -> None:
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         assert step.on_intent(RUN)
     patient_time.wait(qtbot, seconds)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
 
 
@@ -84,17 +84,17 @@ def test_space_starts_and_stops_and_keeps(
     primary = step.bar().primary
     assert primary is not None
     assert (primary.text, primary.is_requested) == ("Start walk", True)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     recording = step.bar().recording
     assert recording is not None
     assert recording.title == "Recording A Alignment A"
     assert step.note == "Recording A Alignment A"
     assert step.cannot_leave
-    qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5)
     assert set(step.page.live.knees) == set(step.page.live.ankles)
     assert step.page.live.cadence_steps_min > 60
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
     assert step.page.bench.isVisible()  # in the place of the question: the leg is prosthetic
@@ -106,11 +106,11 @@ def test_space_starts_and_stops_and_keeps(
     for _ in range(2):
         QTest.keyClick(step.page.bench.alignments.fields.steppers["turns"], Qt.Key.Key_Plus)
     assert [one.text for one in step.bar().others] == ["Walk with B"]
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)  # keeps it, and starts the next
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
     assert not folds_sensors(step)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
@@ -126,7 +126,7 @@ def test_space_starts_and_stops_and_keeps(
     )
     step.undo()
     assert next_label(step) == "Next: Alignment C"
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def next_label(step: WalkingStep) -> str:
@@ -160,7 +160,7 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     assert len(window.view.last) >= 3
     shown = window.view.last
     assert all(50 <= peak <= 75 for peak in shown[-3:])  # its pose jumped as the walk was asked for
-    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "")
     (tally,) = tallies_of(visit.recordings.walks[0].details.note)
     assert tally.target == required
     assert tally.strides >= len(shown)
@@ -169,7 +169,7 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     assert not controls.isVisible()
     walk(qtbot, step, visit, patient_time, 4.0)  # without the screen: nothing is noted
     assert visit.recordings.walks[1].details.note == ""
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def bar_states_change(step: WalkingStep) -> bool:
@@ -180,22 +180,20 @@ def test_five_strides_find_the_ankles_axes_again(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
     calibrate(qtbot, visit, patient_time)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: bool(step.page.live.ankles), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: bool(step.page.live.ankles))
     assert any(ankle.is_provisional for ankle in step.page.live.ankles.values())
-    qtbot.waitUntil(
-        lambda: not any(ankle.is_provisional for ankle in step.page.live.ankles.values()), timeout=PATIENCE_MS
-    )
+    qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page.live.ankles.values()))
     looked_at = visit.evaluation.session
     assert looked_at is not None
     assert looked_at.recordings[-1].condition == "Alignment A"  # a part of it is at the bench under its own name
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     results = ResultsStep(visit)
     qtbot.addWidget(results.page)
     results.enter()  # what was evaluated last holds a part of this walk only
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_a_walk_is_discarded_and_comes_back(
@@ -211,7 +209,7 @@ def test_a_walk_is_discarded_and_comes_back(
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.is_kept)
     assert states(step) == [("A", "Alignment A", WalkState.KEPT)]
     assert step.bar().primary is not None
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 @pytest.mark.parametrize("action", [KeyAction.IDENTIFY, KeyAction.KEEP])
@@ -222,9 +220,9 @@ def test_i_includes_the_walk_just_stopped_as_k_does_and_nothing_else(
     walk(qtbot, step, visit, patient_time, 2.0)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
     assert step.on_intent(Intent(action))
-    qtbot.waitUntil(lambda: states(step) == [("A", "Alignment A", WalkState.KEPT)], timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: states(step) == [("A", "Alignment A", WalkState.KEPT)])
     assert not step.on_intent(Intent(action))
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
@@ -234,14 +232,14 @@ def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
     reached = [(tally,)]
     assert step.feedback is not None
     monkeypatch.setattr(step.feedback, "end_walk", lambda: reached.pop() if reached else ())
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
         assert step.cannot_leave == "The walk is being loaded."
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: tallies_of(visit.recordings.walks[0].details.note) == (tally,), timeout=PATIENCE_MS)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: tallies_of(visit.recordings.walks[0].details.note) == (tally,))
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_reported_of_the_prosthesis(
@@ -253,7 +251,7 @@ def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_reported_of_th
     monkeypatch.setattr(Recorder, "begin", refuse)
     step.page.bench.alignments.fields.steppers["turns"].stepped.emit(1)
     step.on_intent(Intent(KeyAction.NEXT_TEST))
-    with qtbot.waitSignal(visit.recordings.refused, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.refused):
         step.on_intent(RUN)
         assert takes_clicker(step)
     assert not takes_clicker(step)
@@ -265,7 +263,7 @@ def test_that_clocks_have_drifted_apart_is_shown_when_it_comes(
     qtbot: QtBot, step: WalkingStep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     qtbot.wait(100)
-    with qtbot.waitSignal(step.changed, timeout=5000):
+    with qtbot.waitSignal(step.changed):
         monkeypatch.setattr(WornSensors, "are_loose", True)
 
 
@@ -275,28 +273,28 @@ def test_digits_choose_what_the_next_walk_is_called(
     assert step.on_intent(Intent(KeyAction.LABEL, 4))
     walk(qtbot, step, visit, patient_time, 2.0)
     assert visit.recordings.walks[0].details.condition == "Barefoot"
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_a_silent_sensor_is_stated_and_so_is_its_return(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource
 ) -> None:
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     source.silence("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot: no signal for" in step.page.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "R foot: no signal for" in step.page.notice.text)
     assert "right ankle, right gait phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot: signal back after" in step.page.notice.text, timeout=PATIENCE_MS)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    qtbot.waitUntil(lambda: "R foot: signal back after" in step.page.notice.text)
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource, patient_time: PatientTime
 ) -> None:
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     patient_time.wait(qtbot, 4.0)
     assert "samples received" not in step.page.notice.text
@@ -304,10 +302,10 @@ def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
     patient_time.wait(qtbot, 1.5)
     source.wake("DEMO-right_foot")
     patient_time.wait(qtbot, 3.0)
-    qtbot.waitUntil(lambda: "samples received." in step.page.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "samples received." in step.page.notice.text)
     assert step.page.notice.text.startswith("R foot: ")
     assert step.page.received.isHidden()
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     (row,) = step.page.received.rows
     assert row.site is Site.RIGHT_FOOT
@@ -315,7 +313,7 @@ def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
     assert row.counts.longest_gap_s == pytest.approx(1.5, abs=2 * BEHIND_S)
     assert row.counts.expected - row.counts.received == pytest.approx(100.0 * row.counts.longest_gap_s, abs=3)
     assert not step.page.received.isHidden()
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_nothing_is_stated_of_samples_that_all_came(
@@ -324,7 +322,7 @@ def test_nothing_is_stated_of_samples_that_all_came(
     walk(qtbot, step, visit, patient_time, 4.0)
     assert step.page.received.rows == ()
     assert step.page.received.isHidden()
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_sensors_strapped_again_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
@@ -350,18 +348,18 @@ def test_while_no_sensor_is_received_the_charts_go_on_with_a_gap(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     press(step)
-    qtbot.waitUntil(lambda: visit.recordings.is_recording, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording)
     acquisition, shown = visit.sensors.acquisition, list[WalkingReadout]()
     assert acquisition is not None
     monkeypatch.setattr(step.page, "show_view", shown.append)
     monkeypatch.setattr(acquisition, "silent_s", lambda: dict.fromkeys(acquisition.sensors, 4.0))
     qtbot.waitUntil(lambda: len(shown) > 3 and set(shown[-1].missing) == set(visit.sensors.site_of.values()))
     silent_since_s = shown[-1].now_s
-    qtbot.waitUntil(lambda: shown[-1].now_s > silent_since_s, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: shown[-1].now_s > silent_since_s)
     assert all(lane.silent_s[-1][1] is None for lane in shown[-1].lanes.values())
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_while_no_sensor_is_received_no_walk_is_started(
@@ -374,14 +372,14 @@ def test_while_no_sensor_is_received_no_walk_is_started(
     assert acquisition is not None
     silent_s = dict.fromkeys(acquisition.sensors, 4.0)
     monkeypatch.setattr(acquisition, "silent_s", lambda: silent_s)
-    with qtbot.waitSignal(step.changed, timeout=5000):
+    with qtbot.waitSignal(step.changed):
         pass
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
     assert step.bar().note.startswith("No signal from any sensor. Switch the sensors on, or move the receiver closer")
     silent_s[acquisition.sensors[0]] = 0.0  # one is received
-    with qtbot.waitSignal(step.changed, timeout=5000):
+    with qtbot.waitSignal(step.changed):
         pass
     primary = step.bar().primary
     assert primary is not None

@@ -14,7 +14,7 @@ from core.session import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.wizard.begun_visit import begin
-from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.patient_time import PatientTime
 from tests.app.wizard.walking.shown_step import shown_step
 from tests.simulated import session_of
 
@@ -37,10 +37,10 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(RecordingKind.STANDING)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         visit.recordings.begin(acquisition, RecordingKind.STANDING)
     patient_time.wait(qtbot, 4.0)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         visit.recordings.stop()
     with shown_step(qtbot, visit) as step:
         yield step
@@ -54,15 +54,15 @@ def is_for_clicker(step: WalkingStep) -> bool:
 def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     assert step.on_intent(NEXT_TEST)
     assert step.page.next.test.currentText() == "10-metre walk"
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):  # which stops by itself
+    with qtbot.waitSignal(visit.recordings.ended):  # which stops by itself
         step.on_intent(RUN)
-        qtbot.waitUntil(lambda: step.page.timed.isVisible(), timeout=PATIENCE_MS)
+        qtbot.waitUntil(lambda: step.page.timed.isVisible())
         assert is_for_clicker(step)
-        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0"), timeout=PATIENCE_MS)
+        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0"))
     assert not is_for_clicker(step)
     (walk,) = visit.recordings.walks
     assert walk.details.test == PlannedTest(TimedProtocol.TEN_METRES)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
     assert step.page.timed_result.isVisible()
     assert step.page.timed_result.first.text().startswith("10-metre walk: ")
     analysis = visit.evaluation.analysis
@@ -78,9 +78,9 @@ def test_a_key_at_the_tape_wins_and_is_kept(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
     step.on_intent(NEXT_TEST)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
-        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0", "0.1", "0.2"), timeout=PATIENCE_MS)
+        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0", "0.1", "0.2"))
         patient_time.wait(qtbot, 3.0)
         step.on_intent(RUN)  # at the tape, long before the sensors' 10 m
     (walk,) = visit.recordings.walks
@@ -88,7 +88,7 @@ def test_a_key_at_the_tape_wins_and_is_kept(
     assert walk.details.test.start_key_s is None
     pressed_s = walk.details.test.end_key_s
     assert pressed_s is not None
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
     analysis = visit.evaluation.analysis
     assert analysis is not None
     found = analysis.recordings[-1].timed
@@ -101,21 +101,21 @@ def test_a_key_at_the_tape_wins_and_is_kept(
 
 def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     step.on_intent(NEXT_TEST)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         assert step.on_intent(Intent(KeyAction.LEAVE))
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
     assert "time not measured" in step.page.timed_result.first.text()
     for _ in TimedProtocol:
         step.on_intent(NEXT_TEST)
     assert step.page.next.test.currentIndex() == 0
-    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     assert not step.takes_clicker
     assert not step.page.timed.isVisible()
-    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
     assert visit.recordings.walks[-1].details.test is None
     assert not step.page.timed_result.isVisible()
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
