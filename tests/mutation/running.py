@@ -26,7 +26,7 @@ PACKAGES = (
     *("core/verdicts", "app/summary/differences.py"),  # where a silent fault would be a wrong sentence
 )
 TEST_FOLDERS = (
-    *("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports"),
+    *("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports", "tests/app/summary"),
     *("tests/app/test_exported_doubt.py", "tests/app/test_compare_and_export.py"),
 )
 LEFT_BEHIND = (".git", ".venv", "build", "__pycache__", ".hypothesis", "*.egg-info", ".*_cache")
