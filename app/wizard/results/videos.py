@@ -22,7 +22,7 @@ from app.widgets.action_bar import BarAction
 from app.widgets.folder_dialog import ask_for_files, ask_for_new_file
 from app.widgets.question_dialog import QuestionDialog
 from app.wording.numbers import clock
-from app.wording.translation import tr
+from app.wording.translation import later, tr
 from app.workers.background import Work
 from app.workers.refusals import refusal_of
 from devices.cameras.camera import CameraMode, CapturedFrame
@@ -38,6 +38,7 @@ FACES, BLURRED, NONE, DELETE, AGREES = "faces", "blurred", "none", "delete", "ag
 PROPOSED = "video.webm"
 PIECE = 60  # frames that are read at a time
 USUAL_RATE_HZ = 30.0  # of a video that states none
+FULL = later("There is not enough disk space for a video"), later("Delete or move files, then try again")
 LEAST_STEP_S = 0.0005  # between two frames: no video that is read has more than 1000 a second
 
 
@@ -203,9 +204,7 @@ def import_video(
             for time_s, jpeg in zip(piece.time_s, piece.jpegs, strict=True):
                 frame = CapturedFrame(count, opened_ns + round(time_s * 1e9), None, jpeg)
                 if not writer.add(frame, waits=True) and writer.has_ended:
-                    raise ClipRefusedError(
-                        "There is not enough disk space for a video", "Delete or move files, then try again"
-                    )
+                    raise ClipRefusedError(*FULL)
                 count += 1
             if piece.is_end or not piece.jpegs:
                 return writer.stop(), piece.is_damaged
