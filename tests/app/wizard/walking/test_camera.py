@@ -60,6 +60,12 @@ def switch_on(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     qtbot.waitUntil(lambda: all(feed.latest is not None for feed in step.camera.feeds))
 
 
+def switch_both_on(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    qtbot.waitUntil(step.page.camera.isVisible)
+    step.camera.choose_camera(2)
+    switch_on(qtbot, step, visit)
+
+
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, frames: int) -> None:
     """Until each camera has given so many frames of it."""
     with qtbot.waitSignal(visit.recordings.begun):
@@ -117,9 +123,7 @@ def test_two_cameras_have_a_clip_each(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
-    qtbot.waitUntil(step.page.camera.isVisible)
-    step.camera.choose_camera(2)
-    switch_on(qtbot, step, visit)
+    switch_both_on(qtbot, step, visit)
     walk(qtbot, step, visit, frames=8)
     clips_of(qtbot, visit, 2)
     # both are looked into, though the second comes while the first is
@@ -248,9 +252,7 @@ def test_of_two_cameras_one_that_is_lost_costs_its_own_video_only(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
-    qtbot.waitUntil(step.page.camera.isVisible)
-    step.camera.choose_camera(2)
-    switch_on(qtbot, step, visit)
+    switch_both_on(qtbot, step, visit)
     with qtbot.waitSignal(visit.recordings.begun):
         step.on_intent(RUN)
     first, second = step.camera.feeds
