@@ -62,6 +62,7 @@ class LibraryController(QObject):
         self._watch: LibraryWatch | None = None
         self.gone_words: Refusal | None = None  # for whoever comes later; None: the library is where it was opened
         self._is_locked = self._is_to_be_locked = False
+        self._unlocks = 0  # before the lock that is asked for
         self._held: list[Callable[[], object]] = []  # what was asked under the lock
         self._reopening: Job | None = None  # that goes on
         self._opening: Job | None = None  # asked for last
@@ -155,10 +156,11 @@ class LibraryController(QObject):
             return
         was_locked, self._is_to_be_locked, self._is_locked = self._is_locked, True, True
         if not was_locked:
+            self._unlocks = self._holder.unlocks
             self.locking.emit()  # what is asked now waits for the unlock
         if self._long.is_idle:  # what was stopped and has not ended yet still works with the key
             self._wait_for_recordings()
-            self._calls.ask(Job(self._holder.lock))
+            self._calls.ask(Job(partial(self._holder.lock, self._unlocks)))
 
     def call(
         self,

@@ -60,6 +60,7 @@ class LibraryHolder:
         self._library: OpenedLibrary | None = None
         self._ends = ExitStack()
         self._is_to_be_tidied = False
+        self.unlocks = 0  # that succeeded
 
     @property
     def library(self) -> OpenedLibrary:
@@ -163,9 +164,12 @@ class LibraryHolder:
         """Make a library whose administrator is the operator, and open it."""
         return self._open(lambda: create_library(folder, Operator(code, name, Role.ADMINISTRATOR), passphrase))
 
-    def lock(self) -> None:
+    def lock(self, unlocks: int) -> None:
+        """Wipe the data key; not after a further unlock than `unlocks`, which came while the lock waited."""
         library = self._library
-        if library is None or library.data_key is None or not self.long_work.acquire(blocking=False):
+        if library is None or library.data_key is None or self.unlocks != unlocks:
+            return
+        if not self.long_work.acquire(blocking=False):
             return
         try:
             library.library.suspend()
@@ -181,6 +185,7 @@ class LibraryHolder:
             data_key = slots_of(library.keys_folder).open(code, passphrase)
         if library.data_key is not None:
             library.data_key.refill(data_key)
+        self.unlocks += 1
         return Unlocked()
 
     def accept_rollback(self, rollback: Rollback) -> None:

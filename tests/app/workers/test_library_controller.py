@@ -13,6 +13,7 @@ from types import CellType
 from typing import cast
 
 import pytest
+from PySide6.QtCore import QThread
 from pytestqt.qtbot import QtBot
 
 from app.storage.data_key import LibraryLockedError
@@ -613,6 +614,33 @@ def test_a_lock_waits_for_long_work_that_was_stopped_and_has_not_ended(
     assert key
     slow.set()
     qtbot.waitUntil(lambda: not key)
+
+
+def test_an_unlock_that_comes_before_a_waiting_lock_leaves_the_library_open(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    asker, slow, unlocked, answers = Asker(), Event(), Event(), Event()
+    state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
+    others = set(controller.findChildren(QThread))
+
+    def unlock(holder: LibraryHolder) -> Unlocked:
+        found = unlocking(PASSPHRASE)(holder)
+        unlocked.set()
+        answers.wait(60)
+        return found
+
+    controller.run_long(lambda _library, _report: slow.wait(60), None, None, None, asker)
+    (working,) = set(controller.findChildren(QThread)) - others
+    controller.lock()
+    controller.call(unlock, *asker.ears)
+    assert unlocked.wait(60)
+    with qtbot.waitSignal(working.destroyed):  # now nothing keeps the lock from coming
+        slow.set()
+    answers.set()
+    controller.run(lambda library: len(library.library.patients.search()), *asker.ears)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
+    assert asker.refusals == []
+    assert state.library.data_key
 
 
 def test_the_key_is_changed_and_who_left_opens_nothing(
