@@ -19,7 +19,7 @@ CHECKS = (
     ("ruff", "format", "--check"),
     ("mypy",),
     ("lint-imports",),
-    ("pytest", "--numprocesses=2", "--dist=loadfile"),  # what a file prepares is prepared once
+    ("pytest", "--numprocesses=2", "--dist=loadfile", "--durations=15"),  # what a file prepares is prepared once
 )
 CACHE = ROOT / ".pytest_cache"
 MOST_AGAIN = 5  # more that fail are no matter of a busy computer
