@@ -1,8 +1,6 @@
 """From a session to angles: right on data whose truth is known, and changed only by what must change them."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -17,10 +15,8 @@ from core.samples import FloatArray, ImuBlock
 from core.session import Patient, RecordingKind, Session
 from core.signal.rotations import angle_between, joint_frame
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
+from tests.core.hinges import PERSON, Person
 from tests.simulated import session_of
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
 
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
@@ -31,12 +27,6 @@ seeds = st.integers(0, 10**6)
 def angle(found: Analysis, name: str, joint: Joint = KNEE) -> FloatArray:
     (recording,) = (r for r in found.recordings if r.name == name)
     return recording.joints[joint].angle_rad
-
-
-def error_deg(person: "Person", found: Analysis, name: str, joint: Joint) -> FloatArray:
-    (recording,) = (r for r in found.recordings if r.name == name)
-    truth = person.truth(recording.kind, joint, recording.time_s - recording.time_s[0])
-    return np.rad2deg(recording.joints[joint].angle_rad - truth)
 
 
 def of(found: Analysis, joint: Joint = KNEE) -> JointCalibration:
@@ -51,9 +41,9 @@ def reported(found: Analysis) -> set[tuple[str, str]]:
 @pytest.mark.parametrize(
     "seed", [0, pytest.param(1, marks=pytest.mark.endurance), pytest.param(2, marks=pytest.mark.endurance)]
 )
-def test_a_person_of_hinges_is_measured_right(make_person: "Callable[..., Person]", seed: int, method: Method) -> None:
+def test_a_person_of_hinges_is_measured_right(seed: int, method: Method) -> None:
     sites = tuple(site for site in LEG_SITES if site.side is (Side.RIGHT if seed % 2 else Side.LEFT))
-    person = make_person(seed=seed)
+    person = Person(seed=seed)
     found = analyse(person.visit(sites), method)
     for joint in LEG_JOINTS:
         if joint.proximal not in sites:
@@ -71,7 +61,7 @@ def test_a_person_of_hinges_is_measured_right(make_person: "Callable[..., Person
             )
         assert (calibration.is_sign_certain, calibration.zero, calibration.lag_s) == (True, ZeroKind.STANDING, 0.0)
         for name in ("free motion", "walk"):
-            error = error_deg(person, found, name, joint)
+            error = person.error_deg(found, name, joint)
             assert np.sqrt(np.mean(error**2)) < 0.8
             assert np.isfinite(error).all()
             sd_deg = np.rad2deg(found.recordings[0].joints[joint].sd_rad)
@@ -80,10 +70,8 @@ def test_a_person_of_hinges_is_measured_right(make_person: "Callable[..., Person
 
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.endurance) for seed in range(2, 6))])
 @pytest.mark.parametrize("kinds", [(W,), (S, W), (F, W), (S, F, W)])
-def test_flexion_is_positive_on_every_leg_whatever_was_recorded(
-    make_person: "Callable[..., Person]", seed: int, kinds: tuple[RecordingKind, ...]
-) -> None:
-    person = make_person(seed=100 + seed)
+def test_flexion_is_positive_on_every_leg_whatever_was_recorded(seed: int, kinds: tuple[RecordingKind, ...]) -> None:
+    person = Person(seed=100 + seed)
     sites = tuple(site for site in LEG_SITES if site.side is (Side.LEFT if seed % 2 else Side.RIGHT))
     found = analyse(person.visit(sites, kinds=kinds, duration_s=6.0))
     for joint, calibration in found.calibrations[-1].joints.items():
@@ -117,8 +105,8 @@ def test_a_turned_sign_keeps_the_goniometer_s_value_in_standing(knee_visit: Sess
     np.testing.assert_allclose(angle(turned, "walk") - 0.2, -(angle(plain, "walk") - 0.2), atol=1e-12)
 
 
-def test_a_confirmed_sign_changes_nothing_but_its_certainty(person: "Person") -> None:
-    visit = person.visit(kinds=(F,))
+def test_a_confirmed_sign_changes_nothing_but_its_certainty() -> None:
+    visit = PERSON.visit(kinds=(F,))
     plain, confirmed = analyse(visit), analyse(replace(visit, turned_sign={KNEE: 1}))
     np.testing.assert_array_equal(angle(plain, "free motion"), angle(confirmed, "free motion"))
     assert (of(plain).is_sign_certain, of(confirmed).is_sign_certain) == (False, True)
@@ -151,22 +139,20 @@ def test_turning_the_knee_does_not_turn_the_ankle_s_word(leg_visit: Session) -> 
     np.testing.assert_allclose(angle(turned, "walk", ANKLE), -angle(plain, "walk", ANKLE), atol=1e-12)
 
 
-def test_without_standing_range_and_shape_hold(person: "Person") -> None:
-    found = analyse(person.visit(kinds=(F, W)))
+def test_without_standing_range_and_shape_hold() -> None:
+    found = analyse(PERSON.visit(kinds=(F, W)))
     assert of(found).zero is ZeroKind.NONE
-    assert np.std(error_deg(person, found, "walk", KNEE)) < 0.6
+    assert np.std(PERSON.error_deg(found, "walk")) < 0.6
     assert ("no_standing", "session") in reported(found)
 
 
 @settings(max_examples=6)
 @given(seed=seeds)
 @pytest.mark.endurance
-def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
-    make_person: "Callable[..., Person]", seed: int
-) -> None:
+def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(seed: int) -> None:
     turn = Rotation.random(rng=np.random.default_rng(seed))
-    plain = analyse(make_person(seed=7).visit(duration_s=6.0))
-    turned = analyse(make_person(seed=7, extra_turn=turn).visit(duration_s=6.0))
+    plain = analyse(Person(seed=7).visit(duration_s=6.0))
+    turned = analyse(Person(seed=7, extra_turn=turn).visit(duration_s=6.0))
     for name in ("free motion", "walk"):
         assert np.rad2deg(np.abs(angle(plain, name) - angle(turned, name)).max()) < 0.1
     one, other = of(plain), of(turned)
@@ -186,8 +172,8 @@ def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
 @settings(max_examples=4)
 @given(shift_s=st.floats(-1e6, 1e6))
 @pytest.mark.endurance
-def test_shifting_all_clocks_shifts_the_stamps_and_nothing_else(person: "Person", shift_s: float) -> None:
-    plain, shifted = (analyse(person.visit(duration_s=6.0, start_s=start_s)) for start_s in (0.0, shift_s))
+def test_shifting_all_clocks_shifts_the_stamps_and_nothing_else(shift_s: float) -> None:
+    plain, shifted = (analyse(PERSON.visit(duration_s=6.0, start_s=start_s)) for start_s in (0.0, shift_s))
     for one, other in zip(plain.recordings, shifted.recordings, strict=True):
         np.testing.assert_allclose(other.time_s, one.time_s + shift_s, atol=1e-6)
         assert np.rad2deg(np.abs(one.joints[KNEE].angle_rad - other.joints[KNEE].angle_rad).max()) < 0.01
@@ -202,8 +188,8 @@ def swapped(session: Session) -> Session:
 
 
 @pytest.mark.endurance
-def test_swapping_left_and_right_swaps_the_names_and_nothing_else(person: "Person") -> None:
-    visit = person.visit(LEG_SITES, duration_s=6.0)
+def test_swapping_left_and_right_swaps_the_names_and_nothing_else() -> None:
+    visit = PERSON.visit(LEG_SITES, duration_s=6.0)
     plain, mirrored = analyse(visit), analyse(swapped(visit))
     for one, other in zip(plain.recordings, mirrored.recordings, strict=True):
         for joint, found in one.joints.items():
@@ -237,14 +223,14 @@ def test_half_the_rate_gives_the_same_angle(knee_visit: Session, every: int) -> 
 @pytest.mark.parametrize(
     "rate_hz", [60.0, pytest.param(50.0, marks=pytest.mark.endurance), pytest.param(200.0, marks=pytest.mark.endurance)]
 )
-def test_every_rate_finds_the_same_truth(person: "Person", rate_hz: float) -> None:
-    found = analyse(person.visit(rate_hz=rate_hz))
+def test_every_rate_finds_the_same_truth(rate_hz: float) -> None:
+    found = analyse(PERSON.visit(rate_hz=rate_hz))
     for name in ("free motion", "walk"):
-        assert np.sqrt(np.mean(error_deg(person, found, name, KNEE) ** 2)) < 0.8
+        assert np.sqrt(np.mean(PERSON.error_deg(found, name) ** 2)) < 0.8
 
 
-def test_sensors_of_different_rates_meet_on_the_thigh_s_clock(person: "Person") -> None:
-    thigh, shank = person.visit(rate_hz=100.0), person.visit(rate_hz=60.0)
+def test_sensors_of_different_rates_meet_on_the_thigh_s_clock() -> None:
+    thigh, shank = PERSON.visit(rate_hz=100.0), PERSON.visit(rate_hz=60.0)
     mixed = [
         replace(one, imu={Site.LEFT_THIGH: one.imu[Site.LEFT_THIGH], Site.LEFT_SHANK: two.imu[Site.LEFT_SHANK]})
         for one, two in zip(thigh.recordings, shank.recordings, strict=True)
@@ -252,13 +238,11 @@ def test_sensors_of_different_rates_meet_on_the_thigh_s_clock(person: "Person") 
     found = analyse(Session(tuple(mixed)))
     (walk,) = (r for r in found.recordings if r.name == "walk")
     np.testing.assert_array_equal(walk.time_s, thigh.recordings[2].imu[Site.LEFT_THIGH].time_s)
-    assert np.sqrt(np.nanmean(error_deg(person, found, "walk", KNEE) ** 2)) < 0.8
+    assert np.sqrt(np.nanmean(PERSON.error_deg(found, "walk") ** 2)) < 0.8
 
 
 @pytest.mark.parametrize("lag_s", [0.03, -0.02])
-def test_a_late_shank_is_negative_at_the_knee_and_positive_at_the_ankle(
-    person: "Person", leg_visit: Session, lag_s: float
-) -> None:
+def test_a_late_shank_is_negative_at_the_knee_and_positive_at_the_ankle(leg_visit: Session, lag_s: float) -> None:
     late = [
         replace(
             r, imu={s: replace(b, time_s=b.time_s + lag_s) if s is Site.LEFT_SHANK else b for s, b in r.imu.items()}
@@ -269,24 +253,24 @@ def test_a_late_shank_is_negative_at_the_knee_and_positive_at_the_ankle(
     assert of(found, KNEE).lag_s == pytest.approx(-lag_s, abs=0.0015)
     assert of(found, ANKLE).lag_s == pytest.approx(lag_s, abs=0.0015)
     for joint in (KNEE, ANKLE):
-        assert np.sqrt(np.nanmean(error_deg(person, found, "walk", joint) ** 2)) < 0.8
+        assert np.sqrt(np.nanmean(PERSON.error_deg(found, "walk", joint) ** 2)) < 0.8
     assert {("lag_corrected", "left_knee"), ("lag_corrected", "left_ankle")} <= reported(found)
 
 
-def test_the_device_s_own_orientations_give_eq_10_with_the_same_sign_and_zero(person: "Person") -> None:
-    visit = person.visit()
+def test_the_device_s_own_orientations_give_eq_10_with_the_same_sign_and_zero() -> None:
+    visit = PERSON.visit()
     recordings = []
     for r in visit.recordings:
         imu = {}
         for site, b in r.imu.items():
-            turned = person.pose(r.kind, site, b.time_s - b.time_s[0])[0]
+            turned = PERSON.pose(r.kind, site, b.time_s - b.time_s[0])[0]
             imu[site] = replace(b, q_earth_from_sensor=turned.as_quat(scalar_first=True))
         recordings.append(replace(r, imu=imu))
     found = analyse(replace(visit, recordings=tuple(recordings)))
     for measured in found.recordings:
         by_device = measured.joints[KNEE].orientation_rad
         assert by_device is not None
-        truth = person.truth(measured.kind, KNEE, measured.time_s - measured.time_s[0])
+        truth = PERSON.truth(measured.kind, KNEE, measured.time_s - measured.time_s[0])
         assert np.rad2deg(np.abs(by_device - truth).max()) < 0.5
     assert analyse(visit).recordings[0].joints[KNEE].orientation_rad is None
 

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -17,10 +16,8 @@ from core.session import Recording, RecordingKind, Session
 from core.signal.rotations import angle_between
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.core.cut_blocks import Change, changed
+from tests.core.hinges import PERSON
 from tests.simulated import simulation_of
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
 
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
@@ -37,12 +34,12 @@ def with_value(value: float, signal: str = "gyr_rad_s", at: int = 150) -> Change
     return spoil
 
 
-def worst_deg(person: "Person", found: Analysis, joint: Joint = KNEE) -> float:
+def worst_deg(found: Analysis, joint: Joint = KNEE) -> float:
     """Worst RMSE after removing the mean over the recordings that have this joint; 0 where none has."""
     worst = 0.0
     for r in found.recordings:
         if joint in r.joints and np.isfinite(r.joints[joint].angle_rad).any():
-            error = r.joints[joint].angle_rad - person.truth(r.kind, joint, r.time_s - r.time_s[0])
+            error = r.joints[joint].angle_rad - PERSON.truth(r.kind, joint, r.time_s - r.time_s[0])
             worst = max(worst, float(np.rad2deg(np.nanstd(error))))
     return worst
 
@@ -57,8 +54,8 @@ def is_warned(found: Analysis) -> bool:
     return any(f.severity is not Severity.INFO for f in found.findings)
 
 
-def assert_right_or_stated(person: "Person", found: Analysis, joint: Joint = KNEE) -> None:
-    worst = worst_deg(person, found, joint)
+def assert_right_or_stated(found: Analysis, joint: Joint = KNEE) -> None:
+    worst = worst_deg(found, joint)
     assert worst < 3.0 or is_warned(found), f"{worst:.0f} deg wrong, told only {[f.key for f in found.findings]}"
 
 
@@ -70,15 +67,13 @@ def test_a_huge_value_does_not_overflow(knee_visit: Session, signal: str, value:
 
 
 @methods
-def test_one_impossible_sample_counts_as_missing(person: "Person", knee_visit: Session, method: Method) -> None:
+def test_one_impossible_sample_counts_as_missing(knee_visit: Session, method: Method) -> None:
     """One gyr sample of 1e6 rad/s. Same mend: > 100 rad/s or > 1000 m/s2 is a missing sample, with a finding."""
-    assert_right_or_stated(person, analyse(changed(knee_visit, with_value(1e6)), method))
+    assert_right_or_stated(analyse(changed(knee_visit, with_value(1e6)), method))
 
 
 @methods
-def test_a_sensor_that_repeats_one_sample_for_seconds_is_reported(
-    person: "Person", knee_visit: Session, method: Method
-) -> None:
+def test_a_sensor_that_repeats_one_sample_for_seconds_is_reported(knee_visit: Session, method: Method) -> None:
     """From mid-walk on the shank repeats its last sample. Mend: runs of equal rows over 0.25 s are missing,
     reported."""
 
@@ -86,7 +81,7 @@ def test_a_sensor_that_repeats_one_sample_for_seconds_is_reported(
         index = np.minimum(np.arange(len(b)), len(b) // 2)
         return replace(b, gyr_rad_s=b.gyr_rad_s[index], acc_m_s2=b.acc_m_s2[index])
 
-    assert_right_or_stated(person, analyse(changed(knee_visit, stuck, (SHANK,), "walk"), method))
+    assert_right_or_stated(analyse(changed(knee_visit, stuck, (SHANK,), "walk"), method))
 
 
 @methods
@@ -103,7 +98,7 @@ def test_a_sensor_that_is_constant_throughout_is_left_out(knee_visit: Session, m
 
 @methods
 def test_the_same_data_in_two_sensors_is_seen_though_one_lost_its_last_samples(
-    person: "Person", knee_visit: Session, method: Method
+    knee_visit: Session, method: Method
 ) -> None:
     """quality._same_data compares whole heads of 2000. Mend: compare the rows of common stamps."""
 
@@ -116,23 +111,23 @@ def test_the_same_data_in_two_sensors_is_seen_though_one_lost_its_last_samples(
 
 
 @methods
-def test_a_joint_without_zero_states_so_though_another_leg_stood(person: "Person", method: Method) -> None:
+def test_a_joint_without_zero_states_so_though_another_leg_stood(method: Method) -> None:
     """`no_standing` looks at the session only. Mend: one finding per joint whose zero is NONE."""
-    stood = person.recording("standing", S, 3.0, (Site.RIGHT_THIGH, Site.RIGHT_SHANK))
-    found = analyse(Session((stood, *person.visit(kinds=(F, W)).recordings)), method)
+    stood = PERSON.recording("standing", S, 3.0, (Site.RIGHT_THIGH, Site.RIGHT_SHANK))
+    found = analyse(Session((stood, *PERSON.visit(kinds=(F, W)).recordings)), method)
     assert found.calibrations[0].joints[KNEE].zero is ZeroKind.NONE
     assert any("zero" in f.key or "standing" in f.key for f in found.findings)
 
 
 @methods
-def test_a_typed_goniometer_value_that_cannot_be_used_is_reported(person: "Person", method: Method) -> None:
+def test_a_typed_goniometer_value_that_cannot_be_used_is_reported(method: Method) -> None:
     """Without standing the value cannot be used; `no_standing` does not report that it was not."""
-    found = analyse(replace(person.visit(kinds=(F, W)), zero_rad={KNEE: 0.2}), method)
+    found = analyse(replace(PERSON.visit(kinds=(F, W)), zero_rad={KNEE: 0.2}), method)
     assert any("goniometer" in f.key for f in found.findings)
 
 
 @methods
-def test_a_broken_free_motion_leaves_the_walk_s_angles(person: "Person", knee_visit: Session, method: Method) -> None:
+def test_a_broken_free_motion_leaves_the_walk_s_angles(knee_visit: Session, method: Method) -> None:
     """basis_of asks holds(), not is_usable(): a free motion of five samples is in force. Mend: pass what is usable."""
 
     def first(b: ImuBlock) -> ImuBlock:
@@ -185,9 +180,9 @@ def test_a_repeated_stamp_counts_as_missing(knee_visit: Session, method: Method)
 
 @methods
 @pytest.mark.parametrize("rate_hz", [5.0])
-def test_far_too_slow_a_rate_is_reported(person: "Person", rate_hz: float, method: Method) -> None:
+def test_far_too_slow_a_rate_is_reported(rate_hz: float, method: Method) -> None:
     """Mend: a finding under 25 Hz, grave under 10."""
-    assert_right_or_stated(person, analyse(person.visit(rate_hz=rate_hz, duration_s=60.0), method))
+    assert_right_or_stated(analyse(PERSON.visit(rate_hz=rate_hz, duration_s=60.0), method))
 
 
 def optics(test_data: Callable[[str], Path], name: str) -> dict[str, FloatArray]:

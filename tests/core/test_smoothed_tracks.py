@@ -1,7 +1,6 @@
 """Tests of missing samples: filled from the samples adjacent in time, or left unknown."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -11,17 +10,13 @@ from core.placement.smoothed_tracks import smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray
 from core.signal.pair import OrientedTrack
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 
 @pytest.fixture(scope="module")
-def whole(make_person: "Callable[..., Person]") -> OrientedTrack:
+def whole() -> OrientedTrack:
     """A thigh's sensor in twelve seconds of free motion, at 100 Hz."""
-    return make_person(seed=5).exact_pair(Joint.LEFT_KNEE, duration_s=12.0).tracks[0]
+    return Person(seed=5).exact_pair(Joint.LEFT_KNEE, duration_s=12.0).tracks[0]
 
 
 def forces_without(whole: OrientedTrack, lost: slice) -> tuple[FloatArray, FloatArray]:

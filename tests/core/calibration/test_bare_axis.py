@@ -1,7 +1,5 @@
 """Tests that the axes of a joint without tissue are found from its bare rates. Only of such a joint."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -12,19 +10,17 @@ from core.calibration.joint_axis import moved
 from core.signal.datasets import gather
 from core.signal.rotations import angle_between
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.core.hinges import PERSON
 from tests.simulated import session_of
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
 
 KNEE = Joint.LEFT_KNEE
 FOOT_ALONE = (Site.LEFT_SHANK, Site.LEFT_FOOT)
 
 
-def test_axes_that_are_off_come_nearer_by_half_and_more(person: "Person") -> None:
-    pair = person.exact_pair(KNEE, heading_rad=0.3)
+def test_axes_that_are_off_come_nearer_by_half_and_more() -> None:
+    pair = PERSON.exact_pair(KNEE, heading_rad=0.3)
     data = gather((pair,), [np.arange(5, 590)])
-    true = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    true = [PERSON.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
     start = [moved(axis[None], np.deg2rad([[4.0, -3.0]]))[0] for axis in true]
     found = bare_axes(data, (start[0], start[1]))
     assert found is not None
@@ -40,5 +36,5 @@ def test_it_is_reported_which_way_an_ankle_s_axis_was_found(tissue: Tissue, is_b
     assert (("ankle_axis_from_rates", "left_ankle") in reported) is is_bare
 
 
-def test_a_knee_is_never_found_so(person: "Person") -> None:
-    assert "ankle_axis_from_rates" not in {f.key for f in analyse(person.visit()).findings}
+def test_a_knee_is_never_found_so() -> None:
+    assert "ankle_axis_from_rates" not in {f.key for f in analyse(PERSON.visit()).findings}

@@ -1,7 +1,5 @@
 """Tests that the figures of certainty are what they are called."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -19,9 +17,7 @@ from core.prosthesis import JointNature
 from core.samples import FloatArray
 from core.signal.datasets import gather
 from core.signal.rotations import joint_frame
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import PERSON
 
 
 def line_fit(noise: FloatArray, per_block: int) -> float:
@@ -99,12 +95,12 @@ def test_what_is_stated_to_be_the_patient_s_or_no_joint_at_all_is_no_hinge_howev
     assert found[JointNature.NOT_STATED, True] == pytest.approx([0.1, 0.1])
 
 
-def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:
+def test_a_hinge_is_as_loose_as_its_axis_is_off() -> None:
     knee = Joint.LEFT_KNEE
-    pair = person.exact_pair(knee, heading_rad=0.5)
+    pair = PERSON.exact_pair(knee, heading_rad=0.5)
     data = gather((pair,), [np.arange(5, 590, 3)])
     heading = np.full(len(data), 0.5)
-    axis = person.axis(knee.proximal, knee)
+    axis = PERSON.axis(knee.proximal, knee)
     assert looseness(data, axis, heading) < 1e-3
     for off_rad in (0.03, 0.1):
         tilted = np.cos(off_rad) * axis + np.sin(off_rad) * joint_frame(axis)[0]

@@ -1,8 +1,6 @@
 """Tests that both sensors feel the joint's own acceleration. The fit finds centres, biases and lags from it."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -14,21 +12,15 @@ from core.calibration.lag import find_lag
 from core.signal.datasets import Datasets, gather, moving_indices
 from core.signal.pair import OrientedTrack, Pair, lever_matrix, pair_up
 from core.signal.rotations import joint_frame, wrap
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
+PERSON = Person(seed=5)
 
 
 @pytest.fixture(scope="module")
-def person_5(make_person: "Callable[..., Person]") -> "Person":
-    return make_person(seed=5)
-
-
-@pytest.fixture(scope="module")
-def pair(person_5: "Person") -> Pair:
-    return person_5.exact_pair(KNEE, heading_rad=-0.7)
+def pair() -> Pair:
+    return PERSON.exact_pair(KNEE, heading_rad=-0.7)
 
 
 @pytest.fixture(scope="module")
@@ -43,22 +35,22 @@ def test_the_lever_s_acceleration_is_that_of_eq_7() -> None:
     np.testing.assert_allclose(lever_matrix(g, dg) @ o, expected, atol=1e-12)
 
 
-def test_at_the_truth_both_sensors_agree_on_the_joint_s_acceleration(person_5: "Person", data: Datasets) -> None:
-    o1, o2 = (person_5.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
+def test_at_the_truth_both_sensors_agree_on_the_joint_s_acceleration(data: Datasets) -> None:
+    o1, o2 = (PERSON.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
     one = data.a1 - lever_matrix(data.g1, data.dg1) @ o1
     two = data.a2 - lever_matrix(data.g2, data.dg2) @ o2
     rotation = relative_rotation(data, np.full((1, len(data)), -0.7))[0]
     np.testing.assert_allclose(one, np.einsum("nij,nj->ni", rotation, two), atol=2e-3)
 
 
-def test_the_fit_finds_centres_and_the_relative_bias(person_5: "Person", data: Datasets) -> None:
+def test_the_fit_finds_centres_and_the_relative_bias(data: Datasets) -> None:
     bias = np.array([0.05, -0.03, 0.04])
     biased = replace(data, a1=data.a1 + bias)
     rotation = relative_rotation(biased, np.full((1, len(data)), -0.7))
     found = fit_coincidence(biased, rotation).unknowns[0]
     for site, o in ((KNEE.proximal, found[:3]), (KNEE.distal, found[3:6])):
-        plane = np.stack(joint_frame(person_5.axis(site, KNEE)))
-        np.testing.assert_allclose(plane @ (o - person_5.centre_m(site, KNEE)), 0.0, atol=0.003)
+        plane = np.stack(joint_frame(PERSON.axis(site, KNEE)))
+        np.testing.assert_allclose(plane @ (o - PERSON.centre_m(site, KNEE)), 0.0, atol=0.003)
 
 
 def test_a_false_heading_is_dear(data: Datasets) -> None:
@@ -101,10 +93,10 @@ def test_a_lag_beyond_the_search_is_not_called_a_lag(pair: Pair) -> None:
 
 
 @pytest.mark.parametrize("heading", [-0.7, 3.1, -3.1])
-def test_the_heading_of_a_recording_is_found_from_axes_and_centres(person_5: "Person", heading: float) -> None:
-    pair = person_5.exact_pair(KNEE, duration_s=21.0, rate_hz=50.0, heading_rad=heading)
-    j1, j2 = (person_5.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
-    centres = [person_5.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+def test_the_heading_of_a_recording_is_found_from_axes_and_centres(heading: float) -> None:
+    pair = PERSON.exact_pair(KNEE, duration_s=21.0, rate_hz=50.0, heading_rad=heading)
+    j1, j2 = (PERSON.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
+    centres = [PERSON.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
     found = heading_over(pair, j1, j2, np.concatenate([*centres, np.zeros(6)]))
     assert found.shape == (len(pair),)
     np.testing.assert_allclose(wrap(found - heading), 0.0, atol=1e-4)

@@ -1,8 +1,6 @@
 """Tests that the heading by forces walks down the robust cost that it is stated to."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,16 +8,14 @@ from core.body import Joint
 from core.calibration.heading import FORCE_CORRELATION_S, _force_terms
 from core.samples import FloatArray
 from core.signal.datasets import gather
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 STEP_RAD = 1e-6
 
 
-def test_the_slope_is_that_of_a_cost_that_grows_evenly_far_out(make_person: "Callable[..., Person]") -> None:
+def test_the_slope_is_that_of_a_cost_that_grows_evenly_far_out() -> None:
     """The cost sqrt(1 + |f1 - Rz f2|^2 / s^2), s the components' spread; of samples 0.02 s apart a fifth is news."""
-    pair = make_person(seed=3).exact_pair(Joint.LEFT_KNEE)
+    pair = Person(seed=3).exact_pair(Joint.LEFT_KNEE)
     data = gather((pair,), [np.arange(50, 250)])
     spacing_s = 0.2 * FORCE_CORRELATION_S
     data = replace(data, time_s=spacing_s * np.arange(len(data)))

@@ -1,8 +1,5 @@
 """Tests that the stricter method finds the axis of a true hinge, by slopes that are right."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,22 +12,16 @@ from core.calibration.joint_axis import moved
 from core.signal.datasets import Datasets, gather
 from core.signal.robust import robust_sd
 from core.signal.rotations import angle_between
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
+PERSON = Person(seed=3)
 STEP = 1e-6
 
 
 @pytest.fixture(scope="module")
-def person_3(make_person: "Callable[..., Person]") -> "Person":
-    return make_person(seed=3)
-
-
-@pytest.fixture(scope="module")
-def data(person_3: "Person") -> Datasets:
-    pair = person_3.exact_pair(KNEE)
+def data() -> Datasets:
+    pair = PERSON.exact_pair(KNEE)
     return gather((pair,), [np.arange(5, 590, 5)])
 
 
@@ -54,11 +45,11 @@ def test_slopes_are_central_differences(data: Datasets, seed: int) -> None:
         np.testing.assert_allclose(slope[..., k], expected, atol=1e-5 * np.abs(slope).max())
 
 
-def test_at_the_true_axes_nothing_is_left_over(person_3: "Person", data: Datasets) -> None:
-    j1, j2 = (person_3.axis(site, KNEE) for site in (Site.LEFT_THIGH, Site.LEFT_SHANK))
+def test_at_the_true_axes_nothing_is_left_over(data: Datasets) -> None:
+    j1, j2 = (PERSON.axis(site, KNEE) for site in (Site.LEFT_THIGH, Site.LEFT_SHANK))
     np.testing.assert_allclose(in_plane_difference(data, j1, j2), 0.0, atol=1e-7)
     assert hinge_residual(data, j1, j2) < 1e-7
-    centres = np.concatenate([person_3.centre_m(s, KNEE) for s in (Site.LEFT_THIGH, Site.LEFT_SHANK)] + [np.zeros(6)])
+    centres = np.concatenate([PERSON.centre_m(s, KNEE) for s in (Site.LEFT_THIGH, Site.LEFT_SHANK)] + [np.zeros(6)])
     found = hinge_axes(data, j1, j2, centres)
     assert found is not None
     assert angle_between(found[0], j1) < 1e-6
@@ -66,9 +57,9 @@ def test_at_the_true_axes_nothing_is_left_over(person_3: "Person", data: Dataset
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_from_a_few_degrees_away_it_comes_back(person_3: "Person", data: Datasets, seed: int) -> None:
-    truth = [person_3.axis(site, KNEE) for site in (Site.LEFT_THIGH, Site.LEFT_SHANK)]
-    centres = np.concatenate([person_3.centre_m(s, KNEE) for s in (Site.LEFT_THIGH, Site.LEFT_SHANK)] + [np.zeros(6)])
+def test_from_a_few_degrees_away_it_comes_back(data: Datasets, seed: int) -> None:
+    truth = [PERSON.axis(site, KNEE) for site in (Site.LEFT_THIGH, Site.LEFT_SHANK)]
+    centres = np.concatenate([PERSON.centre_m(s, KNEE) for s in (Site.LEFT_THIGH, Site.LEFT_SHANK)] + [np.zeros(6)])
     off = 0.05 * np.random.default_rng(seed).normal(size=(2, 1, 2))
     start = [moved(axis[None], step)[0] for axis, step in zip(truth, off, strict=True)]
     found = hinge_axes(data, start[0], start[1], centres)
@@ -77,9 +68,9 @@ def test_from_a_few_degrees_away_it_comes_back(person_3: "Person", data: Dataset
     assert angle_between(found[1], truth[1]) < 1e-3
 
 
-def test_from_far_away_it_states_so_rather_than_lead_elsewhere(person_3: "Person", data: Datasets) -> None:
-    j1 = moved(person_3.axis(Site.LEFT_THIGH, KNEE)[None], np.array([[0.4, 0.0]]))[0]
-    assert hinge_axes(data, j1, person_3.axis(Site.LEFT_SHANK, KNEE), np.zeros(12)) is None
+def test_from_far_away_it_states_so_rather_than_lead_elsewhere(data: Datasets) -> None:
+    j1 = moved(PERSON.axis(Site.LEFT_THIGH, KNEE)[None], np.array([[0.4, 0.0]]))[0]
+    assert hinge_axes(data, j1, PERSON.axis(Site.LEFT_SHANK, KNEE), np.zeros(12)) is None
 
 
 def test_the_robust_spread_is_the_standard_deviation_of_normal_noise_and_deaf_to_outliers() -> None:

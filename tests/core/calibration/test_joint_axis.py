@@ -1,8 +1,5 @@
 """Tests that the slopes of the axes' residuals are right and the candidates hold the truth."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -23,18 +20,16 @@ from core.calibration.joint_axis import (
 from core.samples import FloatArray
 from core.signal.datasets import Datasets, gather
 from core.signal.rotations import angle_between, wrap
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
 STEP = 1e-6
 
 
 @pytest.fixture(scope="module")
-def few(make_person: "Callable[..., Person]") -> Datasets:
+def few() -> Datasets:
     """Samples of a joint that is a perfect hinge, but seen from arbitrary axes the residuals are large."""
-    pair = make_person(seed=3).exact_pair(KNEE, duration_s=25.0, rate_hz=50.0, heading_rad=1.0)
+    pair = Person(seed=3).exact_pair(KNEE, duration_s=25.0, rate_hz=50.0, heading_rad=1.0)
     return gather((pair,), [np.arange(10, len(pair) - 10, 60)])
 
 
@@ -113,8 +108,8 @@ def test_weights_times_residuals_are_half_the_slope_of_the_loss(seed: int, size:
         )
 
 
-def test_at_the_truth_nothing_is_left_over(make_person: "Callable[..., Person]") -> None:
-    person = make_person(seed=3)
+def test_at_the_truth_nothing_is_left_over() -> None:
+    person = Person(seed=3)
     pair = person.exact_pair(KNEE, heading_rad=0.8)
     data = gather((pair,), [np.arange(5, 500, 7)])
     j1, j2 = (person.axis(site, KNEE)[None] for site in (Site.LEFT_THIGH, Site.LEFT_SHANK))
@@ -126,10 +121,8 @@ def test_at_the_truth_nothing_is_left_over(make_person: "Callable[..., Person]")
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_ANKLE])
-def test_the_truth_is_among_the_candidates_up_to_a_common_sign(
-    make_person: "Callable[..., Person]", seed: int, joint: Joint
-) -> None:
-    person = make_person(seed=seed)
+def test_the_truth_is_among_the_candidates_up_to_a_common_sign(seed: int, joint: Joint) -> None:
+    person = Person(seed=seed)
     pair = person.exact_pair(joint, duration_s=8.0, heading_rad=2.0 * seed)
     data = gather((pair,), [np.arange(5, 790, 4)])
     found = polish(data, candidates(data, data, 0), 5)
@@ -168,8 +161,8 @@ def test_shares_of_knots_interpolate_the_heading(few: Datasets) -> None:
     np.testing.assert_allclose(knot_weights(few).sum(axis=1), 1.0)
 
 
-def test_the_random_walk_does_not_link_two_stretches(make_person: "Callable[..., Person]") -> None:
-    pair = make_person().exact_pair(KNEE, duration_s=20.0, rate_hz=50.0)
+def test_the_random_walk_does_not_link_two_stretches() -> None:
+    pair = Person().exact_pair(KNEE, duration_s=20.0, rate_hz=50.0)
     data = gather((pair, pair), [np.arange(5, 900, 50), np.arange(5, 900, 50)])
     prior = heading_prior(data)
     assert data.knots == 6

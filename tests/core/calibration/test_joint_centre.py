@@ -1,8 +1,7 @@
 """Tests that the slopes of the centre's residual are right and the centre lies where it was put."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,22 +26,16 @@ from core.samples import FloatArray
 from core.signal.datasets import Datasets, gather
 from core.signal.robust import robust_sd
 from core.signal.rotations import joint_frame
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
+PERSON = Person(seed=3)
 STEP = 1e-5
 
 
 @pytest.fixture(scope="module")
-def person_3(make_person: "Callable[..., Person]") -> "Person":
-    return make_person(seed=3)
-
-
-@pytest.fixture(scope="module")
-def data(person_3: "Person") -> Datasets:
-    pair = person_3.exact_pair(KNEE, heading_rad=0.5)
+def data() -> Datasets:
+    pair = PERSON.exact_pair(KNEE, heading_rad=0.5)
     return gather((pair,), [np.arange(5, 590, 3)])
 
 
@@ -94,11 +87,11 @@ def test_the_first_step_uses_slopes_that_are_central_differences(data: Datasets,
     np.testing.assert_allclose(information, required, atol=1e-5 * np.abs(required).max())
 
 
-def test_both_forms_find_a_hinge_s_centre_in_the_plane_normal_to_its_axis(person_3: "Person", data: Datasets) -> None:
+def test_both_forms_find_a_hinge_s_centre_in_the_plane_normal_to_its_axis(data: Datasets) -> None:
     by_vectors = centre_by_vectors(data, np.full(data.knots, 0.5))
     for found in (by_vectors, centre_by_lengths(data, by_vectors.unknowns), centre_by_lengths(data, np.zeros(12))):
         for site, o in ((KNEE.proximal, found.proximal_m), (KNEE.distal, found.distal_m)):
-            assert in_plane_error_m(o, person_3.centre_m(site, KNEE), person_3.axis(site, KNEE)) < 0.001
+            assert in_plane_error_m(o, PERSON.centre_m(site, KNEE), PERSON.axis(site, KNEE)) < 0.001
 
 
 def test_eq_9_takes_the_point_of_the_axis_nearest_to_both_sensors() -> None:
@@ -131,7 +124,7 @@ def test_the_spread_of_a_centre_is_that_of_its_weakest_observable_direction() ->
     assert loose == pytest.approx(np.hypot(MIN_SD_HINGE_M, 0.03 * CENTRE_PRIOR_M), rel=1e-3)
 
 
-def test_what_no_motion_shows_of_a_centre_is_as_uncertain_as_before(person_3: "Person", data: Datasets) -> None:
+def test_what_no_motion_shows_of_a_centre_is_as_uncertain_as_before(data: Datasets) -> None:
     still = replace(data, g1=0 * data.g1, dg1=0 * data.dg1)
     found = centre_by_lengths(still, np.zeros(12))
     assert found.covariance[:3, :3] == pytest.approx(CENTRE_PRIOR_M**2 * np.eye(3), rel=1e-6, abs=1e-9)
@@ -139,7 +132,7 @@ def test_what_no_motion_shows_of_a_centre_is_as_uncertain_as_before(person_3: "P
 
 
 @pytest.mark.endurance
-def test_residuals_count_with_four_times_the_spread_they_show(person_3: "Person", data: Datasets) -> None:
+def test_residuals_count_with_four_times_the_spread_they_show(data: Datasets) -> None:
     """The covariance of eq 8 across the axis: slopes by differences, residuals in blocks of a second."""
     rng = np.random.default_rng(8)
     noisy = replace(data, a1=data.a1 + 0.3 * rng.normal(size=data.a1.shape))
@@ -162,7 +155,7 @@ def test_residuals_count_with_four_times_the_spread_they_show(person_3: "Person"
     unseen = np.linalg.inv(information / (1 + np.sum(weight * shift**2)) + prior)
     expected = unseen + (4.0 / 2.5) ** 2 * by_residuals  # a human joint's sd is reported 2.5 times as large
     for site, part in ((KNEE.proximal, slice(0, 3)), (KNEE.distal, slice(3, 6))):
-        across = np.stack(joint_frame(person_3.axis(site, KNEE)))
+        across = np.stack(joint_frame(PERSON.axis(site, KNEE)))
         reported, required, shown = (
             across @ covariance[part, part] @ across.T for covariance in (found.covariance, expected, by_residuals)
         )

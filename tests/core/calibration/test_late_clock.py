@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -12,22 +11,16 @@ from core.calibration.lag import Lag, find_lag, sharpest_lag, smoothest_lag
 from core.samples import FloatArray
 from core.signal.datasets import Datasets, gather, moving_indices
 from core.signal.pair import OrientedTrack, Pair, pair_up
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
+PERSON = Person(seed=5)
 
 
 @pytest.fixture(scope="module")
-def person_5(make_person: "Callable[..., Person]") -> "Person":
-    return make_person(seed=5)
-
-
-@pytest.fixture(scope="module")
-def pair(person_5: "Person") -> Pair:
+def pair() -> Pair:
     """Twelve seconds of free motion, without any error but a little noise."""
-    pair = person_5.exact_pair(KNEE, duration_s=12.0, heading_rad=0.4)
+    pair = PERSON.exact_pair(KNEE, duration_s=12.0, heading_rad=0.4)
     one, two = pair.tracks
     rng = np.random.default_rng(6)
     noisy = replace(two.track, acc_m_s2=two.track.acc_m_s2 + 0.05 * rng.normal(size=two.track.acc_m_s2.shape))

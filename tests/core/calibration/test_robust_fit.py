@@ -1,7 +1,5 @@
 """Tests that the robust fit weighs errors and priors as it is written down. Cases that can be solved by hand."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -13,11 +11,7 @@ from core.calibration.refinement import refine_on_hinge
 from core.samples import FloatArray
 from core.session import RecordingKind
 from core.signal.datasets import Datasets, gather
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
 
@@ -84,17 +78,17 @@ class Earths:
 
 
 @pytest.fixture(scope="module")
-def standing(make_person: "Callable[..., Person]") -> Datasets:
+def standing() -> Datasets:
     """A leg that is still, which shows nothing of its centres."""
-    pair = make_person(seed=5).exact_pair(KNEE, kind=RecordingKind.STANDING, duration_s=4.0)
+    pair = Person(seed=5).exact_pair(KNEE, kind=RecordingKind.STANDING, duration_s=4.0)
     return gather((pair,), [np.arange(5, len(pair) - 5, 2)])
 
 
 def test_a_hinge_that_does_not_move_leaves_its_centre_as_unknown_as_before(
-    standing: Datasets, make_person: "Callable[..., Person]"
+    standing: Datasets,
 ) -> None:
     """0.3 m for the centres; of the two biases only the difference shows, so that half of their 0.1 m/s2 is left."""
-    person = make_person(seed=5)
+    person = Person(seed=5)
     axes = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
     start = JointCentre(np.array([0.02] * 6 + [0.0] * 6), np.eye(12))
     found = refine_on_hinge(standing, axes[0], axes[1], start)

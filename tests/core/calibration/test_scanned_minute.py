@@ -1,8 +1,6 @@
 """Tests of which minute of a long recording proposes the axes."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -10,17 +8,15 @@ import pytest
 from core.body import Joint
 from core.calibration.joint_axis import _liveliest
 from core.signal.datasets import Datasets, gather
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 SAMPLES = 200
 SPACING_S = 1.0
 
 
 @pytest.fixture(scope="module")
-def moved(make_person: "Callable[..., Person]") -> Datasets:
-    pair = make_person(seed=3).exact_pair(Joint.LEFT_KNEE, duration_s=25.0, rate_hz=50.0)
+def moved() -> Datasets:
+    pair = Person(seed=3).exact_pair(Joint.LEFT_KNEE, duration_s=25.0, rate_hz=50.0)
     return gather((pair,), [np.arange(10, 10 + 5 * SAMPLES, 5)])
 
 

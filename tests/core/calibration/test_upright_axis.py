@@ -1,7 +1,6 @@
 """Tests that the heading between both sensors is found where the joint axis is upright. As when lying on the side."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -13,17 +12,13 @@ from core.session import RecordingKind
 from core.signal.pair import OrientedTrack, Pair, pair_up
 from core.signal.rotations import wrap
 from core.signal.tracks import Track
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
 GRAVITY_M_S2 = np.array([0.0, 0.0, 9.81])
 
 
-def lying(person: "Person", tilt_rad: float, heading_rad: float) -> Pair:
+def lying(person: Person, tilt_rad: float, heading_rad: float) -> Pair:
     """Free motion of a leg in a body that is tilted about its forward axis, the distal earth turned by the heading."""
     t = np.arange(800) / 100.0
     tilt = Rotation.from_rotvec([tilt_rad, 0.0, 0.0])
@@ -44,10 +39,8 @@ def lying(person: "Person", tilt_rad: float, heading_rad: float) -> Pair:
 @pytest.mark.endurance
 @pytest.mark.parametrize("tilt_deg", [0.0, 80.0, -110.0])
 @pytest.mark.parametrize("heading", [-0.7, 2.9])
-def test_a_heading_is_found_from_the_axes_or_from_what_both_sensors_feel(
-    make_person: "Callable[..., Person]", tilt_deg: float, heading: float
-) -> None:
-    person = make_person(seed=5)
+def test_a_heading_is_found_from_the_axes_or_from_what_both_sensors_feel(tilt_deg: float, heading: float) -> None:
+    person = Person(seed=5)
     pair = lying(person, np.deg2rad(tilt_deg), heading)
     axes = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
     centres_m = [person.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
@@ -57,8 +50,8 @@ def test_a_heading_is_found_from_the_axes_or_from_what_both_sensors_feel(
     np.testing.assert_allclose(wrap(found - heading), 0.0, atol=0.02)
 
 
-def test_accelerometers_biases_are_taken_off_before_both_are_compared(make_person: "Callable[..., Person]") -> None:
-    person = make_person(seed=5)
+def test_accelerometers_biases_are_taken_off_before_both_are_compared() -> None:
+    person = Person(seed=5)
     pair = lying(person, np.deg2rad(80.0), 0.5)
     bias = np.array([0.4, -0.6, 0.5]), np.array([-0.5, 0.3, 0.7])
     biased = replace(pair, a1=pair.a1 + bias[0], a2=pair.a2 + bias[1])

@@ -1,8 +1,5 @@
 """Tests that each joint rests on the recordings that FORMATS section 1 states, sentence by sentence."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -12,9 +9,7 @@ from core.calibration.validity import Basis, basis_of, in_force, spans_of_validi
 from core.results import AxisSource, ZeroKind
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind, Session
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import PERSON, Person
 
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 KNEE = (Site.LEFT_THIGH, Site.LEFT_SHANK)
@@ -143,7 +138,7 @@ def test_a_free_motion_calibrates_itself() -> None:
     assert in_force(span, span[0], S, KNEE, Recording.holds) is None
 
 
-def visit_of(person: "Person", *plan: tuple[str, RecordingKind, bool, bool], sites: tuple[Site, ...] = KNEE) -> Session:
+def visit_of(person: Person, *plan: tuple[str, RecordingKind, bool, bool], sites: tuple[Site, ...] = KNEE) -> Session:
     recordings, start_s = [], 0.0
     for name, kind, is_kept, is_restrapped in plan:
         lasts_s = 3.0 if kind is S else 6.0
@@ -157,9 +152,9 @@ def visit_of(person: "Person", *plan: tuple[str, RecordingKind, bool, bool], sit
 
 
 @pytest.mark.endurance
-def test_every_joint_states_from_which_recordings(person: "Person") -> None:
+def test_every_joint_states_from_which_recordings() -> None:
     plan = [("s1", S), ("f1", F), ("s2", S), ("f2", F), ("w1", W), ("w2", W)]
-    visit = visit_of(person, *((n, k, n != "f2", False) for n, k in plan), sites=LEG)
+    visit = visit_of(PERSON, *((n, k, n != "f2", False) for n, k in plan), sites=LEG)
     (calibration,) = analyse(visit).calibrations
     assert calibration.walks == ("w1", "w2")
     knee, ankle = calibration.joints[Joint.LEFT_KNEE], calibration.joints[Joint.LEFT_ANKLE]
@@ -168,24 +163,24 @@ def test_every_joint_states_from_which_recordings(person: "Person") -> None:
     assert {f.key for f in analyse(visit).findings} >= {"recording_discarded"}
 
 
-def test_two_free_motions_give_two_calibrations(person: "Person") -> None:
+def test_two_free_motions_give_two_calibrations() -> None:
     plan = [("s1", S), ("f1", F), ("w1", W), ("f2", F), ("w2", W)]
-    first, second = analyse(visit_of(person, *((n, k, True, False) for n, k in plan))).calibrations
+    first, second = analyse(visit_of(PERSON, *((n, k, True, False) for n, k in plan))).calibrations
     assert (first.walks, second.walks) == (("w1",), ("w2",))
     assert first.joints[Joint.LEFT_KNEE].free_motion_from == "f1"
     assert second.joints[Joint.LEFT_KNEE].free_motion_from == "f2"
 
 
-def test_standing_after_the_walk_gives_the_zero_and_is_reported(person: "Person") -> None:
-    found = analyse(visit_of(person, ("w", W, True, False), ("s", S, True, False)))
+def test_standing_after_the_walk_gives_the_zero_and_is_reported() -> None:
+    found = analyse(visit_of(PERSON, ("w", W, True, False), ("s", S, True, False)))
     (knee,) = found.calibrations[0].joints.values()
     assert (knee.zero, knee.standing_from) == (ZeroKind.STANDING, "s")
     assert knee.axis_source in (AxisSource.WALKING, AxisSource.HINGE)
     assert "calibration_after_walk" in {f.key for f in found.findings}
 
 
-def test_new_straps_need_a_calibration_of_their_own(make_person: "Callable[..., Person]") -> None:
-    before, after = make_person(seed=1), make_person(seed=2)
+def test_new_straps_need_a_calibration_of_their_own() -> None:
+    before, after = Person(seed=1), Person(seed=2)
     first = visit_of(before, ("s1", S, True, False), ("f1", F, True, False), ("w1", W, True, False))
     second = visit_of(after, ("f2", F, True, True), ("w2", W, True, False))
     found = analyse(Session((*first.recordings, *second.recordings)))
@@ -199,6 +194,6 @@ def test_new_straps_need_a_calibration_of_their_own(make_person: "Callable[..., 
     assert ("restrapped", "f2") in {(f.key, f.where) for f in found.findings}
 
 
-def test_a_discarded_walk_has_no_angles(person: "Person") -> None:
-    found = analyse(visit_of(person, ("s", S, True, False), ("w1", W, True, False), ("w2", W, False, False)))
+def test_a_discarded_walk_has_no_angles() -> None:
+    found = analyse(visit_of(PERSON, ("s", S, True, False), ("w1", W, True, False), ("w2", W, False, False)))
     assert [r.name for r in found.recordings] == ["w1"]

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -23,18 +22,16 @@ from core.samples import FloatArray
 from core.session import RecordingKind
 from core.signal.pair import Pair
 from core.signal.rotations import joint_frame, wrap
+from tests.core.hinges import Person
 
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
-
-Built = tuple["Person", Pair, FloatArray, FloatArray, FloatArray, FloatArray]
+Built = tuple[Person, Pair, FloatArray, FloatArray, FloatArray, FloatArray]
 
 
 @pytest.fixture(scope="module", params=[(3, Joint.LEFT_KNEE), (4, Joint.RIGHT_ANKLE), (6, Joint.RIGHT_KNEE)])
-def built(make_person: "Callable[..., Person]", request: pytest.FixtureRequest) -> Built:
+def built(request: pytest.FixtureRequest) -> Built:
     """A person, exact samples of one hinge in one common earth, its axes in clinical sign and its centres."""
     seed, joint = request.param
-    person = make_person(seed=seed)
+    person = Person(seed=seed)
     pair = person.exact_pair(joint)
     axes = [person.axis(site, joint) for site in (joint.proximal, joint.distal)]
     centres = [person.centre_m(site, joint) for site in (joint.proximal, joint.distal)]

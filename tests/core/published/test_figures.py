@@ -1,8 +1,6 @@
 """Tests that the numbers behind Figures 3, 4 and 6 show what is true of a hinge. Its every truth is known."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,18 +18,16 @@ from core.samples import FloatArray
 from core.session import RecordingKind
 from core.signal.pair import Pair
 from core.signal.rotations import angle_between
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 Hinge = tuple[Pair, FloatArray, FloatArray, FloatArray, FloatArray]
 DRIFT_RAD_S = np.deg2rad(1.5)  # that of the paper's own example
 
 
 @pytest.fixture(scope="module")
-def hinge(make_person: "Callable[..., Person]") -> Hinge:
+def hinge() -> Hinge:
     """Exact samples of some seconds, the true axes and the true centres."""
-    person, joint = make_person(seed=4), Joint.RIGHT_ANKLE
+    person, joint = Person(seed=4), Joint.RIGHT_ANKLE
     pair = person.exact_pair(joint, RecordingKind.FREE_MOTION, duration_s=8.0, rate_hz=50.0)
     j1, j2 = (person.axis(site, joint) for site in (joint.proximal, joint.distal))
     o1, o2 = (person.centre_m(site, joint) for site in (joint.proximal, joint.distal))

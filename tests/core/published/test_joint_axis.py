@@ -1,7 +1,6 @@
 """Tests that the paper's own identification of axes follows its slopes to the axes of a hinge."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +13,7 @@ from core.published.joint_axis import axis_from_angles, constraint, identify_axe
 from core.published.signs import signs_match
 from core.samples import FloatArray
 from core.signal.rotations import angle_between
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 KNEE = Joint.LEFT_KNEE
 STEP = 1e-6
@@ -60,10 +57,8 @@ def test_the_first_step_uses_slopes_that_are_central_differences(
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.LEFT_ANKLE])
-def test_the_axes_of_a_hinge_are_found_however_the_sensors_are_turned(
-    make_person: "Callable[..., Person]", seed: int, joint: Joint
-) -> None:
-    person = make_person(seed=seed)
+def test_the_axes_of_a_hinge_are_found_however_the_sensors_are_turned(seed: int, joint: Joint) -> None:
+    person = Person(seed=seed)
     pair = person.exact_pair(joint)
     j1, j2 = identify_axes(pair.g1[::10], pair.g2[::10])
     for site, axis in ((joint.proximal, j1), (joint.distal, j2)):
@@ -72,8 +67,8 @@ def test_the_axes_of_a_hinge_are_found_however_the_sensors_are_turned(
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_congruence_shows_whether_the_axes_point_the_same_way(make_person: "Callable[..., Person]", seed: int) -> None:
-    person = make_person(seed=seed)
+def test_congruence_shows_whether_the_axes_point_the_same_way(seed: int) -> None:
+    person = Person(seed=seed)
     pair = person.exact_pair(KNEE, duration_s=10.0)
     j1, j2 = (person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
     for turn in (1.0, -1.0):

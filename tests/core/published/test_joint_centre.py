@@ -1,7 +1,6 @@
 """Tests that the paper's own identification of centres follows its slopes, and that eq 9 is kept."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +13,7 @@ from core.published.joint_centre import identify_centres, shifted_to_sensors
 from core.samples import FloatArray
 from core.signal.pair import Pair
 from core.signal.rotations import joint_frame
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import PERSON, Person
 
 STEP = 1e-6
 SIGNALS = ("a1", "a2", "g1", "g2", "dg1", "dg2")
@@ -35,8 +32,8 @@ def lengths_apart(sets: list[FloatArray], x: FloatArray) -> FloatArray:
 
 @settings(max_examples=12)
 @given(start=st.lists(st.floats(-0.3, 0.3), min_size=6, max_size=6))
-def test_the_first_step_uses_slopes_that_are_central_differences(person: "Person", start: list[float]) -> None:
-    sets = data_sets(person.exact_pair(Joint.LEFT_KNEE, duration_s=2.0), 20)
+def test_the_first_step_uses_slopes_that_are_central_differences(start: list[float]) -> None:
+    sets = data_sets(PERSON.exact_pair(Joint.LEFT_KNEE, duration_s=2.0), 20)
     x = np.array(start)
     seen: list[tuple[FloatArray, FloatArray]] = []
     lstsq = np.linalg.lstsq
@@ -58,10 +55,8 @@ def test_the_first_step_uses_slopes_that_are_central_differences(person: "Person
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_ANKLE])
-def test_the_centre_of_a_hinge_is_found_in_the_plane_normal_to_its_axis(
-    make_person: "Callable[..., Person]", seed: int, joint: Joint
-) -> None:
-    person = make_person(seed=seed)
+def test_the_centre_of_a_hinge_is_found_in_the_plane_normal_to_its_axis(seed: int, joint: Joint) -> None:
+    person = Person(seed=seed)
     o1, o2 = identify_centres(*data_sets(person.exact_pair(joint), 10))
     for site, o in ((joint.proximal, o1), (joint.distal, o2)):
         plane = np.stack(joint_frame(person.axis(site, joint)))

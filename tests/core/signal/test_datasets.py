@@ -1,8 +1,6 @@
 """Tests that the samples that identify a joint are those that were known, moving and slow enough."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -10,14 +8,12 @@ import pytest
 from core.body import Joint
 from core.signal.datasets import KNOT_SPACING_S, gather, knot_positions, moving_indices
 from core.signal.pair import Pair
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
+from tests.core.hinges import Person
 
 
 @pytest.fixture(scope="module")
-def pair(make_person: "Callable[..., Person]") -> Pair:
-    return make_person(seed=2).exact_pair(Joint.LEFT_KNEE, duration_s=24.0, rate_hz=50.0)
+def pair() -> Pair:
+    return Person(seed=2).exact_pair(Joint.LEFT_KNEE, duration_s=24.0, rate_hz=50.0)
 
 
 def test_samples_run_from_the_first_to_the_last_movement(pair: Pair) -> None:

@@ -1,7 +1,6 @@
 """Bad input ends in a finding, never in a traceback and never in a silent number (FORMATS, section 4)."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ from core.analysis import analyse
 from core.body import Joint, Segment, Side, Site
 from core.findings import Severity
 from core.results import Analysis, Method
-from core.samples import FloatArray, ImuBlock
+from core.samples import ImuBlock
 from core.session import Recording, RecordingKind, Session
 from core.signal.reception import lost_percent
 from core.verdicts.quality import look_at
@@ -26,10 +25,8 @@ from devices.simulation.walker import (
     WalkerSettings,
 )
 from tests.core.cut_blocks import Change, changed
+from tests.core.hinges import PERSON
 from tests.simulated import session_of, simulation_of
-
-if TYPE_CHECKING:
-    from tests.core.conftest import Person
 
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
@@ -74,12 +71,6 @@ def assert_no_angle(found: Analysis, joint: Joint = KNEE) -> None:
     assert any(f.severity is Severity.GRAVE and (str(joint) in f.where or f.where == "session") for f in found.findings)
 
 
-def error_deg(person: "Person", found: Analysis, name: str, joint: Joint = KNEE) -> FloatArray:
-    (recording,) = (r for r in found.recordings if r.name == name)
-    truth = person.truth(recording.kind, joint, recording.time_s - recording.time_s[0])
-    return np.rad2deg(recording.joints[joint].angle_rad - truth)
-
-
 methods = pytest.mark.parametrize(
     "method", [Method.ROBUST, pytest.param(Method.PUBLISHED, marks=pytest.mark.endurance)]
 )
@@ -95,10 +86,10 @@ def test_hardly_any_samples(knee_visit: Session, n: int, method: Method) -> None
 
 @methods
 @pytest.mark.parametrize("n", [0, 1, 5])
-def test_one_broken_walk_leaves_the_others(person: "Person", knee_visit: Session, n: int, method: Method) -> None:
+def test_one_broken_walk_leaves_the_others(knee_visit: Session, n: int, method: Method) -> None:
     found = analyse(changed(knee_visit, first(n), (SHANK,), "walk"), method)
     assert ("too_few_samples", "walk, left_shank") in reported(found)
-    assert np.abs(error_deg(person, found, "free motion")).max() < 2.0
+    assert np.abs(PERSON.error_deg(found, "free motion")).max() < 2.0
     (walk,) = (r for r in found.recordings if r.name == "walk")
     assert KNEE not in walk.joints
 
@@ -134,13 +125,11 @@ def test_storms_of_nan_that_leave_nothing(knee_visit: Session, share: float, met
 
 @methods
 @pytest.mark.parametrize(("share", "key"), [(0.05, "bridged"), (0.5, "gaps")])
-def test_storms_of_nan_that_leave_enough(
-    person: "Person", knee_visit: Session, share: float, key: str, method: Method
-) -> None:
+def test_storms_of_nan_that_leave_enough(knee_visit: Session, share: float, key: str, method: Method) -> None:
     found = analyse(changed(knee_visit, storm(share)), method)
     assert reported(found) >= everywhere(key, THIGH, SHANK)
     for name in ("free motion", "walk"):
-        error = error_deg(person, found, name)
+        error = PERSON.error_deg(found, name)
         assert np.count_nonzero(np.isfinite(error)) > 700
         assert np.nanmax(np.abs(error)) < 2.5
 
@@ -213,8 +202,8 @@ def test_two_clocks_that_disagree(knee_visit: Session, method: Method) -> None:
         ((THIGH, Site.RIGHT_SHANK), {"left_shank", "right_thigh", "right_foot"}),
     ],
 )
-def test_sites_that_form_no_joint(person: "Person", sites: tuple[Site, ...], missing: set[str], method: Method) -> None:
-    found = analyse(person.visit(sites, duration_s=4.0), method)
+def test_sites_that_form_no_joint(sites: tuple[Site, ...], missing: set[str], method: Method) -> None:
+    found = analyse(PERSON.visit(sites, duration_s=4.0), method)
     assert {where for key, where in reported(found) if key == "missing_site"} == missing
     is_feet_only = all(site.segment is Segment.FOOT for site in sites)
     assert ("feet_only" if is_feet_only else "no_joint", "session") in reported(found)
@@ -222,20 +211,20 @@ def test_sites_that_form_no_joint(person: "Person", sites: tuple[Site, ...], mis
 
 
 @methods
-def test_a_missing_site_leaves_the_other_joint(person: "Person", knee_visit: Session, method: Method) -> None:
+def test_a_missing_site_leaves_the_other_joint(knee_visit: Session, method: Method) -> None:
     found = analyse(knee_visit, method)
     assert ("missing_site", "left_foot") in reported(found)
-    assert np.abs(error_deg(person, found, "walk")).max() < 1.0
+    assert np.abs(PERSON.error_deg(found, "walk")).max() < 1.0
 
 
 @pytest.mark.endurance
 @methods
 @pytest.mark.parametrize("kinds", [(F, W), (W,), (F,), (S, W)])
-def test_sessions_without_some_recordings(person: "Person", kinds: tuple[RecordingKind, ...], method: Method) -> None:
-    found = analyse(person.visit(kinds=kinds), method)
+def test_sessions_without_some_recordings(kinds: tuple[RecordingKind, ...], method: Method) -> None:
+    found = analyse(PERSON.visit(kinds=kinds), method)
     assert ("no_standing" in keys(found)) is (S not in kinds)
     name = "walk" if W in kinds else "free motion"
-    error = error_deg(person, found, name)
+    error = PERSON.error_deg(found, name)
     assert np.std(error) < 1.0 or (kinds == (F,) and "clinical_sign_uncertain" in keys(found))
     if method is Method.ROBUST:
         assert ("axis_from_walking" in keys(found)) is (F not in kinds)
@@ -243,8 +232,8 @@ def test_sessions_without_some_recordings(person: "Person", kinds: tuple[Recordi
 
 @methods
 @pytest.mark.parametrize("sites", [(THIGH, SHANK), (FOOT,)])
-def test_only_standing(person: "Person", sites: tuple[Site, ...], method: Method) -> None:
-    found = analyse(person.visit(sites, kinds=(S,)), method)
+def test_only_standing(sites: tuple[Site, ...], method: Method) -> None:
+    found = analyse(PERSON.visit(sites, kinds=(S,)), method)
     assert ("no_joint", "session") in reported(found)
     assert (found.recordings, found.calibrations) == ((), ())
 
@@ -267,14 +256,14 @@ def test_nothing_at_all(knee_visit: Session, method: Method) -> None:
 
 
 @methods
-def test_a_few_infinite_values_are_missing_samples(person: "Person", knee_visit: Session, method: Method) -> None:
+def test_a_few_infinite_values_are_missing_samples(knee_visit: Session, method: Method) -> None:
     def overflow(b: ImuBlock) -> ImuBlock:
         gyr = b.gyr_rad_s.copy()
         gyr[150:153] = [np.inf, -np.inf, np.nan]
         return replace(b, gyr_rad_s=gyr)
 
     found = analyse(changed(knee_visit, overflow), method)
-    assert np.nanmax(np.abs(error_deg(person, found, "walk"))) < 1.0
+    assert np.nanmax(np.abs(PERSON.error_deg(found, "walk"))) < 1.0
 
 
 @methods
@@ -291,12 +280,12 @@ def test_clipped_rates_are_reported(knee_visit: Session, method: Method) -> None
 
 
 @methods
-def test_walking_instead_of_standing_gives_no_zero(person: "Person", knee_visit: Session, method: Method) -> None:
+def test_walking_instead_of_standing_gives_no_zero(knee_visit: Session, method: Method) -> None:
     walk = knee_visit.recordings[2]
     moved = (replace(walk, name="standing", kind=S), *knee_visit.recordings[1:])
     found = analyse(replace(knee_visit, recordings=moved), method)
     assert {("moved_while_standing", "standing, left_thigh"), ("gyro_bias_unknown", "left_knee")} <= reported(found)
-    assert np.std(error_deg(person, found, "walk")) < 1.0
+    assert np.std(PERSON.error_deg(found, "walk")) < 1.0
 
 
 def coarse(gyr_step: float, acc_step: float) -> Change:
@@ -324,12 +313,12 @@ def test_a_coarse_sensor_is_not_clipped_nor_stuck_nor_a_copy(errors: SensorError
         assert not look_at(session_of(settings)).findings
 
 
-def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> None:
+def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range() -> None:
     def hold(b: ImuBlock) -> ImuBlock:
         slow = 5.0 * np.sin(2 * np.pi * 0.5 * (b.time_s - b.time_s[0]))
         return replace(b, gyr_rad_s=np.round(np.stack([slow, slow, slow], axis=-1), 1))
 
-    reported_of = look_at(changed(person.visit((SHANK,), duration_s=8.0), hold)).findings
+    reported_of = look_at(changed(PERSON.visit((SHANK,), duration_s=8.0), hold)).findings
     assert "clipped" not in {f.key for f in reported_of}
 
 
@@ -392,8 +381,8 @@ def every_20th(b: ImuBlock) -> ImuBlock:
     return ImuBlock(b.sensor, b.time_s[::20], b.gyr_rad_s[::20], b.acc_m_s2[::20])
 
 
-def test_a_slow_sensor_does_not_show_milliseconds(person: "Person") -> None:
-    keys_reported = {f.key for f in look_at(changed(person.visit(duration_s=20.0), every_20th)).findings}
+def test_a_slow_sensor_does_not_show_milliseconds() -> None:
+    keys_reported = {f.key for f in look_at(changed(PERSON.visit(duration_s=20.0), every_20th)).findings}
     assert "time_in_ms" not in keys_reported
     assert "low_rate" in keys_reported
 
@@ -477,8 +466,8 @@ def test_a_trembling_stance_is_rest_and_a_shaking_one_is_reported(
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("start_s", [-1e9, 1e9, 1.7e9])
-def test_stamps_far_from_zero_change_nothing(person: "Person", knee_visit: Session, start_s: float) -> None:
-    near, far = analyse(knee_visit), analyse(person.visit(start_s=start_s))
+def test_stamps_far_from_zero_change_nothing(knee_visit: Session, start_s: float) -> None:
+    near, far = analyse(knee_visit), analyse(PERSON.visit(start_s=start_s))
     assert reported(near) == reported(far)
     for one, other in zip(near.recordings, far.recordings, strict=True):
         difference = one.joints[KNEE].angle_rad - other.joints[KNEE].angle_rad
@@ -487,7 +476,7 @@ def test_stamps_far_from_zero_change_nothing(person: "Person", knee_visit: Sessi
 
 
 @methods
-def test_gaps_are_gaps_in_the_angle(person: "Person", knee_visit: Session, method: Method) -> None:
+def test_gaps_are_gaps_in_the_angle(knee_visit: Session, method: Method) -> None:
     def hole(b: ImuBlock) -> ImuBlock:
         keep = (b.time_s - b.time_s[0] < 4.0) | (b.time_s - b.time_s[0] > 4.6)
         return replace(b, time_s=b.time_s[keep], gyr_rad_s=b.gyr_rad_s[keep], acc_m_s2=b.acc_m_s2[keep])
@@ -499,7 +488,7 @@ def test_gaps_are_gaps_in_the_angle(person: "Person", knee_visit: Session, metho
     assert np.isnan(angle[inside]).all()
     assert np.isfinite(angle[(t < 3.995) | (t > 4.605)]).all()
     assert np.isnan(walk.joints[KNEE].sd_rad[inside]).all()
-    assert np.nanmax(np.abs(error_deg(person, found, "walk"))) < 2.0
+    assert np.nanmax(np.abs(PERSON.error_deg(found, "walk"))) < 2.0
     assert ("gaps", "walk, left_shank") in reported(found)
 
 
@@ -526,8 +515,8 @@ def test_findings_say_each_thing_once(knee_visit: Session) -> None:
     assert len(seen) == len(set(seen))
 
 
-def test_a_recording_of_other_sites_only_is_left_in_peace(person: "Person", knee_visit: Session) -> None:
-    other: Recording = person.recording("arms", F, 3.0, (FOOT,))
+def test_a_recording_of_other_sites_only_is_left_in_peace(knee_visit: Session) -> None:
+    other: Recording = PERSON.recording("arms", F, 3.0, (FOOT,))
     found = analyse(replace(knee_visit, recordings=(*knee_visit.recordings, other)))
     (arms,) = (r for r in found.recordings if r.name == "arms")
     assert not arms.joints
