@@ -31,3 +31,8 @@ def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITE
         imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
         recordings.append(replace(r, imu=imu))
     return replace(session, recordings=tuple(recordings))
+
+
+def first(n: int) -> Change:
+    """Only so many samples of a block."""
+    return lambda block: block.select(slice(n))

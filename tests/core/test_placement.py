@@ -414,7 +414,7 @@ def test_a_recording_with_gaps_is_arranged(circling: Session) -> None:
             keep = np.ones(len(b), dtype=bool)
             at = int(rng.integers(len(b) // 3, len(b) // 2))
             keep[at : at + 30] = False
-            imu[site] = ImuBlock(b.sensor, b.time_s[keep], b.gyr_rad_s[keep], b.acc_m_s2[keep])
+            imu[site] = b.select(keep)
         recordings.append(replace(r, imu=imu))
     assert is_right(chains_of(replace(circling, recordings=tuple(recordings))))
 

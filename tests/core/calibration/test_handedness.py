@@ -74,8 +74,7 @@ def pieces(session: Session) -> Iterator[Session]:
 
 
 def part(b: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    here = (b.time_s >= from_s) & (b.time_s < to_s)
-    return ImuBlock(b.sensor, b.time_s[here], b.gyr_rad_s[here], b.acc_m_s2[here])
+    return b.select((b.time_s >= from_s) & (b.time_s < to_s))
 
 
 def test_no_recorded_mechanism_is_refused(test_data: FindData) -> None:

@@ -1,4 +1,4 @@
-"""A foot's samples with their orientation, as the events are found in."""
+"""A foot's or shank's samples with their orientation, as the events are found in."""
 
 from core.samples import FloatArray, ImuBlock, RateKind
 from core.signal.orientation import oriented

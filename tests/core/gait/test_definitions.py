@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from core.body import Side, Site
-from core.calibration.rest import rest_of
 from core.gait.cycles import excursion_of_cycles, find_peak
 from core.gait.events import FootEvents
 from core.gait.phases import PHASES, phases_at
@@ -17,11 +16,11 @@ from core.gait.shank import gait_of_shank
 from core.gait.strides import Reason, strides_of
 from core.gait.symmetry import curve_difference, gait_variable_score
 from core.parameters import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, Excursion
-from core.samples import FloatArray, RateKind
-from core.signal.orientation import oriented
+from core.samples import FloatArray
 from core.signal.robust import robust_sd
-from core.signal.tracks import even_tracks
 from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.core.gait.feet import foot_of
+from tests.core.standing import bias_of
 from tests.simulated import simulation_of
 
 PERCENT = np.arange(101.0)
@@ -173,9 +172,7 @@ def test_with_a_shank_alone_swing_is_swing_and_stance_unknown() -> None:
     site = Site.RIGHT_SHANK
     made = simulation_of(WalkerSettings(sites=(site,), recordings=(Standing(), Walk())))
     standing, moving = made.session.recordings
-    rest, (track,) = rest_of(standing.imu[site]), even_tracks(moving.imu[site])
-    assert rest is not None
-    found = gait_of_shank(oriented(track, RateKind.INSTANTANEOUS, rest.gyr_rad_s))
+    found = gait_of_shank(foot_of(moving.imu[site], bias_of(standing.imu[site])))
     events = made.truth.recordings[moving.name].feet[Side.RIGHT].events
     mid_swing = 0.5 * (events.toe_off_s + events.initial_contact_s)[1:-1]
     mid_stance = 0.5 * (events.initial_contact_s[1:-1] + events.toe_off_s[2:])

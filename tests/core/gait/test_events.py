@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 import core.gait.events as events_module
 from core.body import Side, Site
-from core.calibration.rest import rest_of
 from core.gait.crossings import crossing, onset
 from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
 from core.gait.foot import FootMotion
@@ -19,6 +18,7 @@ from core.gait.sole import SoleTravel, travel_of
 from core.samples import BoolArray, FloatArray, ImuBlock
 from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings
 from tests.core.gait.feet import foot_of
+from tests.core.standing import bias_of
 from tests.simulated import simulation_of
 
 FOOT = Site.LEFT_FOOT
@@ -31,9 +31,7 @@ def walk_of(settings: WalkerSettings, turn: Rotation | None = None) -> tuple[Foo
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
     if turn is not None:
         blocks = [replace(b, gyr_rad_s=turn.apply(b.gyr_rad_s), acc_m_s2=turn.apply(b.acc_m_s2)) for b in blocks]
-    rest = rest_of(blocks[0])
-    assert rest is not None
-    return gait_of(foot_of(blocks[1], rest.gyr_rad_s)), made.truth.recordings["walk 1"].feet[Side.LEFT]
+    return gait_of(foot_of(blocks[1], bias_of(blocks[0]))), made.truth.recordings["walk 1"].feet[Side.LEFT]
 
 
 def walking(
@@ -135,9 +133,8 @@ def test_a_foot_that_rolls_is_timed_by_its_pitch_and_is_surer() -> None:
 def test_a_prosthetic_foots_toe_off_is_timed_by_its_sole(speed_m_s: float) -> None:
     settings = replace(walking(speed_m_s), prosthetic_side=Side.LEFT)
     made = simulation_of(replace(settings, sites=(FOOT,)))
-    rest = rest_of(made.session.recordings[0].imu[FOOT])
-    assert rest is not None
-    track = foot_of(made.session.recordings[1].imu[FOOT], rest.gyr_rad_s)
+    standing, walk = (recording.imu[FOOT] for recording in made.session.recordings)
+    track = foot_of(walk, bias_of(standing))
     truth = made.truth.recordings["walk 1"].feet[Side.LEFT]
     assert np.abs(late_s(gait_of(track, is_rigid=True), truth, "toe_off_s")).max() < 0.020
     assert late_s(gait_of(track), truth, "toe_off_s").min() > 0.025  # the pitch reports it late
@@ -193,9 +190,7 @@ def test_standing_and_free_motion_hold_no_strides() -> None:
         WalkerSettings(recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=20.0)), sites=(FOOT,))
     )
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
-    rest = rest_of(blocks[0])
-    assert rest is not None
-    standing, free = (gait_of(foot_of(block, rest.gyr_rad_s)) for block in blocks)
+    standing, free = (gait_of(foot_of(block, bias_of(blocks[0]))) for block in blocks)
     assert len(standing) == 0
     assert len(free) <= 1  # a foot set down somewhere else; no stride
 
@@ -231,9 +226,7 @@ def test_optics_and_events_agree(test_data: Callable[[str], Path]) -> None:
     paths = _lengths(folder / "position_sample.csv")
     for side, (gyr, acc) in feet.items():
         block = ImuBlock("foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
-        rest = rest_of(block)
-        assert rest is not None
-        found = gait_of(foot_of(block, rest.gyr_rad_s))
+        found = gait_of(foot_of(block, bias_of(block)))
         here = [row for row in rows if row["foot"] == side]
         nearest = [int(np.argmin(np.abs(found.initial_contact_s - float(r["ic"]) / rate_hz))) for r in here]
         assert len(set(nearest)) == len(here)

@@ -9,7 +9,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.body import Side, Site
-from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.foot import follow
 from core.gait.live import SETTINGS, FootEvent, LiveEvent, LiveEvents
@@ -18,6 +17,7 @@ from core.samples import GRAVITY_M_S2, FloatArray, ImuBlock
 from core.signal.pair import OrientedTrack
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
 from tests.core.gait.feet import foot_of
+from tests.core.standing import bias_of
 from tests.simulated import session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -33,9 +33,7 @@ def walker_feet(settings: WalkerSettings) -> list[OrientedTrack]:
     recordings = session_of(settings).recordings
     for site in settings.sites:
         standing, walk = (recording.imu[site] for recording in recordings)
-        rest = rest_of(standing)
-        assert rest is not None
-        feet.append(foot_of(walk, rest.gyr_rad_s))
+        feet.append(foot_of(walk, bias_of(standing)))
     return feet
 
 
@@ -296,9 +294,7 @@ def test_optics_feet_are_reported_as_offline(test_data: Callable[[str], Path], i
     found = dict.fromkeys(FootEvent, 0)
     for gyr, acc in feet:
         block = ImuBlock("foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
-        rest = rest_of(block)
-        assert rest is not None
-        foot = foot_of(block, rest.gyr_rad_s)
+        foot = foot_of(block, bias_of(block))
         reported, offline = reported_of(foot, follow(foot).pitch_axis if is_axis_given else None), gait_of(foot)
         for event in FootEvent:
             found[event] += int(np.sum(differences(reported, offline, event) < MAX_DIFFERENCE_S))

@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from core.body import Side, Site
-from core.calibration.rest import rest_of
 from core.gait.events import FootEvents
 from core.gait.phases import PHASES, Phase, phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.strides import strides_of
-from core.samples import RateKind
-from core.signal.orientation import oriented
-from core.signal.tracks import even_tracks
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
 from devices.simulation.walker_motion import TrueFootEvents
+from tests.core.gait.feet import foot_of
+from tests.core.standing import bias_of
 from tests.simulated import simulation_of
 
 SHANK = Site.RIGHT_SHANK
@@ -24,10 +22,7 @@ SHANK = Site.RIGHT_SHANK
 def events_of(settings: WalkerSettings) -> tuple[FootEvents, TrueFootEvents]:
     made = simulation_of(replace(settings, sites=(SHANK,)))
     standing, moving = made.session.recordings
-    rest = rest_of(standing.imu[SHANK])
-    assert rest is not None
-    (track,) = even_tracks(moving.imu[SHANK])
-    found = gait_of_shank(oriented(track, RateKind.INSTANTANEOUS, rest.gyr_rad_s))
+    found = gait_of_shank(foot_of(moving.imu[SHANK], bias_of(standing.imu[SHANK])))
     return found, made.truth.recordings[moving.name].feet[Side.RIGHT].events
 
 

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from core.body import Side, Site
-from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.strides import Reason, strides_of
 from core.samples import FloatArray, ImuBlock, RateKind
@@ -19,6 +18,7 @@ from core.signal.orientation import oriented
 from core.signal.tracks import MAX_BRIDGED_GAP_S, even_tracks
 from devices.files.session_folder import read_session
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings
+from tests.core.standing import bias_of
 from tests.simulated import simulation_of
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
@@ -64,8 +64,7 @@ def without_packets(block: ImuBlock, share: float, rng: np.random.Generator) -> 
     while np.mean(is_lost) < share:
         start = int(rng.integers(len(block)))
         is_lost[start : start + int(rng.integers(1, 7))] = True
-    keep = ~is_lost
-    return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
+    return block.select(~is_lost)
 
 
 @pytest.mark.endurance
@@ -90,9 +89,7 @@ def test_contacts_on_the_straight_are_found_and_turns_left_out(loss: float, spee
         made = simulation_of(replace(settings, sites=tuple(FEET.values())))
         standing, walked = made.session.recordings
         for side, site in FEET.items():
-            rest = rest_of(standing.imu[site])
-            assert rest is not None
-            stretches = events_of(walked.imu[site], rest.gyr_rad_s)
+            stretches = events_of(walked.imu[site], bias_of(standing.imu[site]))
             true_s = made.truth.recordings[walked.name].feet[side].events.initial_contact_s
             middle_s = 0.5 * (true_s[0] + true_s[-1])
             is_straight = np.abs(true_s - middle_s) > 2.5

@@ -75,14 +75,10 @@ def soft() -> LiveVisit:
     return visit(WalkerSettings(seed=3, tissue=Tissue.SOFT))
 
 
-def part(block: ImuBlock, which: slice | np.ndarray) -> ImuBlock:
-    return ImuBlock(block.sensor, block.time_s[which], block.gyr_rad_s[which], block.acc_m_s2[which])
-
-
 def without(recording: Recording, site: Site, from_s: float, to_s: float) -> Recording:
     block = recording.imu[site]
     is_kept = (block.time_s < from_s) | (block.time_s > to_s)
-    return replace(recording, imu={**recording.imu, site: part(block, is_kept)})
+    return replace(recording, imu={**recording.imu, site: block.select(is_kept)})
 
 
 def sensor(calibration: JointCalibration, site: Site, rate_hz: float, left_rad_s: float = 0.0) -> LiveOrientation:
@@ -204,7 +200,7 @@ def test_neither_blocks_nor_a_late_sensor_change_anything(
         new = []
         for site, stream in streams.items():
             shift = later if site is joint.distal else 0
-            stream.feed(part(recording.imu[site], slice(max(a - shift, 0), max(b - shift, 0))))
+            stream.feed(recording.imu[site].select(slice(max(a - shift, 0), max(b - shift, 0))))
             new.append(turned[site].update(stream.take()))
         pieces.append(angle.update(*new))
     assert_same(all_of(pieces), whole)
@@ -239,7 +235,7 @@ def test_after_a_jump_that_no_rate_reported_the_angle_is_right_again_within_six_
 
     def jumped(block: ImuBlock) -> ImuBlock:
         before, after = block.time_s < from_s, block.time_s >= from_s + missing_s
-        kept = part(block, before | after)
+        kept = block.select(before | after)
         return replace(kept, time_s=np.where(kept.time_s < from_s, kept.time_s, kept.time_s - missing_s))
 
     imu = {site: jumped(block) for site, block in one.walk.imu.items()}
@@ -388,7 +384,7 @@ def test_averaged_rates_come_out_as_instants_one_sample_late() -> None:
     stream, live = EvenStream(100.0), LiveOrientation(np.zeros(3), RateKind.AVERAGED, 0.01)
     found = []
     for a, b in pairwise([0, 7, 8, 100, 300]):
-        stream.feed(part(block, slice(a, b)))
+        stream.feed(block.select(slice(a, b)))
         found.append(live.update(stream.take()))
     turned = joined(found)
     assert len(turned) == 299

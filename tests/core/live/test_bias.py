@@ -39,9 +39,7 @@ def test_the_first_rest_after_a_movement_corrects_a_bias_and_states_by_how_much(
     live = LiveSensors({Site.LEFT_SHANK: LiveSensor(RATE_HZ, NO_BIAS, kind)})
     found = []
     for k in range(0, len(samples), size):
-        part = slice(k, k + size)
-        new = ImuBlock("s", samples.time_s[part], samples.gyr_rad_s[part], samples.acc_m_s2[part])
-        turned = live.update({Site.LEFT_SHANK: new})
+        turned = live.update({Site.LEFT_SHANK: samples.select(slice(k, k + size))})
         found += list(turned.values())
     (one,) = live.corrections
     assert np.rad2deg(one.off_rad_s) == pytest.approx(5.0, abs=0.1)

@@ -5,13 +5,12 @@ from dataclasses import replace
 import pytest
 
 from core.body import LEG_SITES, Joint, Side, Site
-from core.calibration.rest import rest_of
 from core.live.free_motion import FreeMotionState, LiveFreeMotion
 from core.live.lag import LagVerdict
-from core.live.sensors import LiveSensor
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
 from devices.simulation.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings
 from tests.core.cut_blocks import in_blocks
+from tests.core.standing import live_sensors
 from tests.simulated import simulation_of
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
@@ -25,17 +24,8 @@ def made(sites: tuple[Site, ...] = LEFT, motion: Motion = Motion.FULL, late_s: f
     )
 
 
-def sensors_of(session: SimulatedSession) -> dict[Site, LiveSensor]:
-    found = {}
-    for site, block in session.session.recordings[0].imu.items():
-        rest = rest_of(block)
-        assert rest is not None
-        found[site] = LiveSensor(100.0, rest.gyr_rad_s)
-    return found
-
-
 def watched(session: SimulatedSession, block_s: float = 0.033) -> list[FreeMotionState]:
-    motion = LiveFreeMotion(sensors_of(session))
+    motion = LiveFreeMotion(live_sensors(session.session))
     return [motion.update(blocks) for blocks in in_blocks(session.session.recordings[1].imu, block_s)]
 
 
@@ -91,7 +81,7 @@ def test_the_size_of_the_blocks_changes_nothing(
 def test_a_leg_held_still_stays_open_and_is_asked_for() -> None:
     session = made(sites=(*LEFT, Site.RIGHT_THIGH, Site.RIGHT_SHANK))
     still = session.session.recordings[0].imu
-    motion = LiveFreeMotion(sensors_of(session))
+    motion = LiveFreeMotion(live_sensors(session.session))
     imu = {**session.session.recordings[1].imu, **{site: still[site] for site in (Site.RIGHT_THIGH, Site.RIGHT_SHANK)}}
     state = motion.update(imu)
     assert state.weakest is Joint.RIGHT_KNEE
@@ -99,12 +89,14 @@ def test_a_leg_held_still_stays_open_and_is_asked_for() -> None:
 
 
 def test_a_foot_without_ankle_joint_is_not_asked_for(circling: SimulatedSession) -> None:
-    motion = LiveFreeMotion(sensors_of(circling), frozenset({Joint.LEFT_KNEE}), without_ankle=frozenset({Side.LEFT}))
+    motion = LiveFreeMotion(
+        live_sensors(circling.session), frozenset({Joint.LEFT_KNEE}), without_ankle=frozenset({Side.LEFT})
+    )
     assert set(motion.update({}).joints) == {Joint.LEFT_KNEE}
 
 
 def test_a_silent_sensor_keeps_nothing_waiting_for_long(circling: SimulatedSession) -> None:
-    motion = LiveFreeMotion(sensors_of(circling))
+    motion = LiveFreeMotion(live_sensors(circling.session))
     block = circling.session.recordings[1].imu[Site.LEFT_THIGH]
     for k in range(10):
         motion.update({Site.LEFT_THIGH: replace(block, time_s=block.time_s + 18.01 * k)})
@@ -114,7 +106,7 @@ def test_a_silent_sensor_keeps_nothing_waiting_for_long(circling: SimulatedSessi
 def test_samples_that_come_twice_are_counted_and_change_nothing(
     circling: SimulatedSession, states: list[FreeMotionState]
 ) -> None:
-    motion = LiveFreeMotion(sensors_of(circling))
+    motion = LiveFreeMotion(live_sensors(circling.session))
     site = Site.LEFT_FOOT
     for blocks in in_blocks(circling.session.recordings[1].imu, 0.5):
         motion.update(blocks)

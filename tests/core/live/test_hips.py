@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from core.body import LEG_SITES, Joint, Side, Site, hip_of
-from core.calibration.rest import rest_of
 from core.hip.results import HipIdentification
 from core.live.free_motion import LiveFreeMotion
 from core.live.hip_heading import HipHeadingState
-from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk
 from core.samples import FloatArray, ImuBlock
 from devices.simulation.walker import (
@@ -27,6 +25,7 @@ from devices.simulation.walker import (
 )
 from devices.simulation.walker_pelvis import hip_truth
 from tests.core.cut_blocks import in_blocks, part_of
+from tests.core.standing import live_sensors
 
 PELVIS_AND_THIGHS = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.PELVIS)
 HIPS = tuple(hip_of(side) for side in Side)
@@ -46,15 +45,6 @@ def walk() -> SimulatedSession:
 def moved(motion: Motion, tissue: Tissue = Tissue.SOFT) -> SimulatedSession:
     recordings = (Standing(), FreeMotion(duration_s=12.0, motion=motion))
     return simulate(WalkerSettings(seed=3, sites=PELVIS_AND_THIGHS, tissue=tissue, recordings=recordings))
-
-
-def sensors_of(made: SimulatedSession) -> dict[Site, LiveSensor]:
-    found = {}
-    for site, block in made.session.recordings[0].imu.items():
-        rest = rest_of(block)
-        assert rest is not None
-        found[site] = LiveSensor(100.0, rest.gyr_rad_s)
-    return found
 
 
 def true_hips(made: SimulatedSession) -> dict[Joint, HipIdentification]:
@@ -93,7 +83,7 @@ def reported(
 
 
 def live_walk(made: SimulatedSession, hips: Mapping[Joint, HipIdentification] | None = None) -> LiveWalk:
-    return LiveWalk(sensors_of(made), {}, true_hips(made) if hips is None else hips)
+    return LiveWalk(live_sensors(made.session), {}, true_hips(made) if hips is None else hips)
 
 
 def true_deg(made: SimulatedSession, side: Side, time_s: FloatArray) -> FloatArray:
@@ -188,13 +178,13 @@ def test_nothing_is_reported_of_hips_without_a_sensor_on_the_pelvis_or_on_the_th
         ((Site.LEFT_THIGH, Site.RIGHT_THIGH), set()),
         ((Site.PELVIS, Site.LEFT_THIGH), {Joint.LEFT_HIP}),
     ):
-        sensors = {site: sensor for site, sensor in sensors_of(made).items() if site in worn}
+        sensors = {site: sensor for site, sensor in live_sensors(made.session).items() if site in worn}
         found = reported(LiveWalk(sensors, {}, true_hips(made)), [{site: imu[site] for site in worn}])
         assert set(found) == expected
 
 
 def headings(made: SimulatedSession) -> Mapping[Joint, HipHeadingState]:
-    motion = LiveFreeMotion(sensors_of(made))
+    motion = LiveFreeMotion(live_sensors(made.session))
     states = [motion.update(block).hips for block in in_blocks(made.session.recordings[1].imu, 0.5)]
     return states[-1]
 
@@ -216,7 +206,7 @@ def test_two_sensors_that_share_no_hip_are_not_trusted() -> None:
     sites = (Site.LEFT_THIGH, Site.RIGHT_FOOT, Site.PELVIS)
     made = simulate(WalkerSettings(seed=4, sites=sites, recordings=(Standing(), Walk(strides=9))))
     exchanged = {Site.PELVIS: Site.RIGHT_FOOT, Site.LEFT_THIGH: Site.LEFT_THIGH}
-    sensors, imu = sensors_of(made), made.session.recordings[-1].imu
+    sensors, imu = live_sensors(made.session), made.session.recordings[-1].imu
     motion = LiveFreeMotion({site: sensors[at] for site, at in exchanged.items()})
     (state,) = motion.update({site: imu[at] for site, at in exchanged.items()}).hips.values()
     assert state.moved_s > 6.0

@@ -2,8 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,18 +9,18 @@ from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
 from core.body import Side, knee_of
-from core.calibration.rest import rest_of
 from core.gait.live import FootEvent, LiveEvent
 from core.gait.phases import Phase
 from core.live.angle import AngleSamples
 from core.live.foot_pitch import FootPitch, FootStrike
 from core.live.orientation import OrientedSamples
-from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue, StrideValues
 from core.live.walking import LiveFoot, LiveJoint, LiveWalk, WalkingState
 from core.samples import FloatArray
 from core.targets import TargetMeasure
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.core.cut_blocks import in_blocks
+from tests.core.standing import live_sensors
 
 STEP_S = 0.01
 OFF, ON = FootEvent.TOE_OFF, FootEvent.INITIAL_CONTACT
@@ -160,22 +158,10 @@ def test_a_foot_that_was_never_quiet_or_whose_axis_is_unknown_has_no_pitch() -> 
 def test_the_values_of_a_walk_are_those_of_the_bones(seed: int, tissue: Tissue, rate_hz: float) -> None:
     recordings = (Standing(), FreeMotion(), Walk("walk 1", strides=14, standing_before_s=2.0))
     made = simulate(WalkerSettings(seed=seed, rate_hz=rate_hz, tissue=tissue, recordings=recordings))
-    standing, _, walk = made.session.recordings
-    sensors = {}
-    for site, block in standing.imu.items():
-        rest = rest_of(block)
-        assert rest is not None
-        sensors[site] = LiveSensor(rate_hz, rest.gyr_rad_s)
-    live, values = LiveWalk(sensors, analyse(made.session).calibrations[-1].joints), StrideValues()
+    live = LiveWalk(live_sensors(made.session), analyse(made.session).calibrations[-1].joints)
+    walk, values = made.session.recordings[-1], StrideValues()
     reported: list[StrideValue] = []
-    end_s = max(float(block.time_s[-1]) for block in walk.imu.values())
-    for a, b in pairwise(np.arange(0.0, end_s + 0.06, 0.03)):
-        blocks = {}
-        for site, block in walk.imu.items():
-            part = slice(*np.searchsorted(block.time_s, [a, b]))
-            blocks[site] = replace(
-                block, time_s=block.time_s[part], gyr_rad_s=block.gyr_rad_s[part], acc_m_s2=block.acc_m_s2[part]
-            )
+    for blocks in in_blocks(walk.imu, 0.03):
         reported += values.update(live.update(blocks))
     truth = made.truth.recordings["walk 1"]
     legs = made.moved[2].legs

@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
-from core.calibration.rest import rest_of
 from core.gait.live import FootEvent, LiveEvent
 from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk, WalkingState
@@ -18,6 +17,7 @@ from core.samples import ImuBlock
 from core.session import Recording
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
 from tests.core.cut_blocks import in_blocks
+from tests.core.standing import live_sensors
 from tests.simulated import simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -51,12 +51,7 @@ def calibration(analysis: Analysis) -> Mapping[Joint, JointCalibration]:
 
 @pytest.fixture(scope="module")
 def sensors(made: SimulatedSession) -> dict[Site, LiveSensor]:
-    found = {}
-    for site, block in made.session.recordings[0].imu.items():
-        rest = rest_of(block)
-        assert rest is not None
-        found[site] = LiveSensor(made.session.sensors[site].rate_hz or 100.0, rest.gyr_rad_s)
-    return found
+    return live_sensors(made.session)
 
 
 def walk_of(made: SimulatedSession) -> Recording:
