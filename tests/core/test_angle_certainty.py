@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from core.body import LEG_SITES, Side
 from devices.simulation.walker import Standing, Walk, WalkerSettings
 from tests.benchmarks.certainty import (
     OF_LEVEL,
@@ -17,7 +18,8 @@ from tests.benchmarks.certainty import (
     fitted_wearers,
 )
 
-WALK = WalkerSettings(recordings=(Standing(), Walk(strides=6)))
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)  # nothing is worn on the other leg
+WALK = WalkerSettings(recordings=(Standing(), Walk(strides=6)), sites=LEFT)
 
 
 def covered(settings: WalkerSettings, tissue: str, worn: Wearer, seeds: range) -> dict[str, list[Coverage]]:

@@ -22,6 +22,7 @@ def test_that_needs_a_quiet_computer():
 @pytest.fixture
 def running(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.syspath_prepend(PACKAGING)
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # each takes its time in three processes of a test
     spec = spec_from_file_location("running", PACKAGING / "test.py")  # Python has a module `test` of its own
     assert spec is not None
     assert spec.loader is not None
@@ -34,7 +35,7 @@ def _tested(running: ModuleType, tmp_path: Path, tests: str) -> int:
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     (tmp_path / "conftest.py").write_text("from tests.crashed import pytest_handlecrashitem\n")
     (tmp_path / "test_it.py").write_text(tests)
-    call = [sys.executable, "-m", "pytest", "-q", "--numprocesses=1", str(tmp_path)]
+    call = [sys.executable, "-m", "pytest", "-q", "-p", "xdist", "--numprocesses=1", str(tmp_path)]
     code: int = running.tested(call, tmp_path / ".pytest_cache")
     return code
 

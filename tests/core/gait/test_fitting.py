@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.body import Segment, Side
+from core.body import LEG_SITES, Segment, Side
 from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee
 from core.gait.inclination import inclination, lean_about, tilt_by_speeding_up
 from core.gait.strides import Reason, Strides
@@ -17,6 +17,7 @@ from core.samples import FloatArray
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.simulated import analysis_of, session_of
 
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 PERCENT = np.arange(101.0)
 TIME_S = np.linspace(0.0, 4.0, 401)
 
@@ -134,7 +135,8 @@ def test_without_standing_the_differences_of_an_inclination_hold() -> None:
 def test_a_rigid_foot_has_one_angle_to_its_shank_from_the_first_stride_to_the_last(turn_rad: float) -> None:
     """Getting going, turning and stopping tilt the filter's vertical by degrees; the foot is as it was set."""
     walk = Walk(strides=24, turn_rad=turn_rad)
-    settings = WalkerSettings(seed=3, recordings=(Standing(), FreeMotion(), walk), prosthetic_side=Side.LEFT)
+    recordings = (Standing(), FreeMotion(), walk)
+    settings = WalkerSettings(seed=3, sites=LEFT, recordings=recordings, prosthetic_side=Side.LEFT)
     gait = analysis_of(session_of(settings)).recordings[-1].gait[Side.LEFT]
     angles_deg = np.rad2deg(gait.parameters["shank_to_foot_in_swing_rad"])
     used = angles_deg[gait.strides.is_used]

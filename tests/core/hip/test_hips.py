@@ -10,9 +10,10 @@ from core.body import Joint, Side, Site, hip_of
 from core.gait.clocks import ClockTie
 from core.hip.measure import with_sd
 from core.hip.results import ClockStatus
+from core.results import RecordingAnalysis
 from core.session import Recording, RecordingKind, Session
 from core.verdicts.model import Verdict
-from devices.simulation.walker import Standing, Tissue, Walk, simulate
+from devices.simulation.walker import SimulatedSession, Standing, Tissue, Walk, simulate
 from devices.simulation.walker_pelvis import pelvis_truth
 from tests.core.hip.hip_sessions import abduction_error_deg, analysed, flexion_error_deg, settings, truth
 
@@ -83,20 +84,26 @@ def test_clocks_that_are_reported_to_be_one_are_not_moved() -> None:
     assert abs(clock.offset_s) < 0.001
 
 
-def test_a_short_walk_leaves_the_clocks_unknown() -> None:
-    required = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
-    walk = analyse(simulate(required).session).recordings[-1]
+@pytest.fixture(scope="module")
+def short() -> tuple[SimulatedSession, RecordingAnalysis]:
+    """A walk that is too short to show how far apart the clocks of both legs are."""
+    made = simulate(replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8))))
+    return made, analyse(made.session).recordings[-1]
+
+
+def test_a_short_walk_leaves_the_clocks_unknown(short: tuple[SimulatedSession, RecordingAnalysis]) -> None:
+    _, walk = short
     assert walk.leg_clock is not None
     assert walk.leg_clock.status is ClockStatus.NOT_REPORTED
     assert walk.leg_clock.applied_s == 0.0
     assert walk.verdicts.between.verdict is Verdict.NOT_REPORTED
 
 
-def test_where_clocks_are_unknown_each_hip_stays_on_its_own_leg_s() -> None:
+def test_where_clocks_are_unknown_each_hip_stays_on_its_own_leg_s(
+    short: tuple[SimulatedSession, RecordingAnalysis],
+) -> None:
     """As its knee and its strides do: on the other leg's it would be 40 ms beside them."""
-    required = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
-    made = simulate(required)
-    walk = analyse(made.session).recordings[-1]
+    made, walk = short
     assert walk.hips[Joint.RIGHT_HIP].identification.lag_s == pytest.approx(-0.04, abs=0.002)
     late = truth(made, Side.RIGHT, late_s=0.04)
     own_clock = replace(late, time_s=late.time_s + 0.04)

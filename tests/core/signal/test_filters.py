@@ -8,12 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from core.body import LEG_SITES, Side
 from core.signal.filters import FILTER
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.simulated import analysis_of, session_of
 
 ROOT = Path(__file__).parents[3]
-SETTINGS = WalkerSettings(seed=1, recordings=(Standing(), FreeMotion(), Walk(strides=5)))
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
+SETTINGS = WalkerSettings(seed=1, sites=LEFT, recordings=(Standing(), FreeMotion(duration_s=6.0), Walk(strides=5)))
 WITHOUT = """
 import pickle, sys
 sys.modules["vqf"] = None  # importing it raises, as where it is not installed

@@ -62,6 +62,19 @@ def up_and_go() -> SimulatedCourse:
     return simulate_course(draw_course(CourseKind.UP_AND_GO, 1))
 
 
+def silent(made: SimulatedCourse, sites: tuple[Site, ...], from_s: float, to_s: float) -> Session:
+    """The course as it would be received if some sensors sent nothing meanwhile."""
+    course = made.session.recordings[1]
+    received = {site: b.select((b.time_s < from_s) | (b.time_s > to_s)) for site, b in course.imu.items()}
+    imu = {site: received[site] if site in sites else block for site, block in course.imu.items()}
+    return with_course(made.session, replace(course, imu=imu))
+
+
+def without_feet(made: SimulatedCourse) -> Session:
+    course = made.session.recordings[1]
+    return with_course(made.session, replace(course, imu={s: b for s, b in course.imu.items() if s not in FEET}))
+
+
 def turns_between(truth: CourseTruth, start_s: float, end_s: float) -> list[float]:
     return [turn.angle_rad for turn in truth.turns if start_s <= 0.5 * (turn.start_s + turn.end_s) <= end_s]
 
@@ -107,10 +120,9 @@ def test_two_minutes_with_turns_a_pause_and_a_slowing_patient(two_minutes: Simul
     assert last.cadence_steps_min < 0.95 * first.cadence_steps_min
 
 
-def test_a_silent_foot_takes_the_distance_and_not_the_time() -> None:
-    course = replace(TWO_MINUTES, silent_s={Site.LEFT_FOOT: (60.0, 65.0)})
-    made = simulate_course(course)
-    found = timed(made.session, TimedProtocol.TWO_MINUTES)
+def test_a_silent_foot_takes_the_distance_and_not_the_time(two_minutes: SimulatedCourse) -> None:
+    truth = two_minutes.truth
+    found = timed(silent(two_minutes, (Site.LEFT_FOOT,), 60.0, 65.0), TimedProtocol.TWO_MINUTES)
     assert found.time_s == pytest.approx(120.0)
     assert np.isnan(found.distance_m)
     assert np.isnan(found.speed_m_s)
@@ -118,9 +130,9 @@ def test_a_silent_foot_takes_the_distance_and_not_the_time() -> None:
     (silence,) = found.silences
     assert silence.site is Site.LEFT_FOOT
     assert (silence.start_s, silence.end_s) == pytest.approx((60.0, 65.0), abs=0.05)
-    start_s = float(made.truth.contacts_s[0])
-    assert len(found.turns) == len(turns_between(made.truth, start_s, start_s + 120.0))
-    assert len(found.pauses_s) == len(made.truth.pauses_s)
+    start_s = float(truth.contacts_s[0])
+    assert len(found.turns) == len(turns_between(truth, start_s, start_s + 120.0))
+    assert len(found.pauses_s) == len(truth.pauses_s)
     # laps that the silence does not touch keep their distance
     assert sum(np.isfinite(lap.distance_m) for lap in found.laps) == len(found.laps) - 1
 
@@ -175,25 +187,16 @@ def test_keys_while_nobody_rises_are_no_up_and_go(up_and_go: SimulatedCourse) ->
 
 
 def test_without_feet_a_course_is_not_checked_and_its_walked_parts_are_missing(up_and_go: SimulatedCourse) -> None:
-    course = up_and_go.session.recordings[1]
-    thighs = {site: block for site, block in course.imu.items() if site not in FEET}
-    found = timed(with_course(up_and_go.session, replace(course, imu=thighs)), TimedProtocol.UP_AND_GO)
+    found = timed(without_feet(up_and_go), TimedProtocol.UP_AND_GO)
     assert (found.validity, found.is_valid) == (Validity.NOT_CHECKED, True)
     known = {one.part for one in found.parts if np.isfinite(one.time_s)}
     assert known == {PartOfUpAndGo.RISE, PartOfUpAndGo.SIT}
 
 
 def test_a_swing_lost_in_a_gap_leaves_the_course_unchecked_and_the_turns_unknown(up_and_go: SimulatedCourse) -> None:
-    truth, course = up_and_go.truth, up_and_go.session.recordings[1]
-    turn_s = 0.5 * sum(truth.parts_s["turn"])
-
-    def without(from_s: float, to_s: float) -> TimedTest:
-        foot = course.imu[Site.LEFT_FOOT]
-        cut_foot = foot.select((foot.time_s < from_s) | (foot.time_s > to_s))
-        imu = {**course.imu, Site.LEFT_FOOT: cut_foot}
-        return timed(with_course(up_and_go.session, replace(course, imu=imu)), TimedProtocol.UP_AND_GO)
-
-    found = [without(turn_s + shift_s, turn_s + shift_s + 0.28) for shift_s in (-0.6, -0.3, 0.0, 0.3)]
+    turn_s = 0.5 * sum(up_and_go.truth.parts_s["turn"])
+    gaps_s = [(turn_s + shift_s, turn_s + shift_s + 0.28) for shift_s in (-0.6, -0.3, 0.0, 0.3)]
+    found = [timed(silent(up_and_go, (Site.LEFT_FOOT,), *gap_s), TimedProtocol.UP_AND_GO) for gap_s in gaps_s]
     assert all(one.silences == () for one in found)
     unknown = [one for one in found if one.validity is Validity.NOT_CHECKED]
     assert unknown  # some of these gaps lie in a swing
@@ -245,12 +248,11 @@ def test_laps_of_an_entered_length_count_and_are_held_against_the_feet(two_minut
     assert NotValid.LAP_DIFFERS in longer.not_valid
 
 
-def test_laps_count_where_one_foot_was_silent_and_not_where_both_were() -> None:
+def test_laps_count_where_one_foot_was_silent_and_not_where_both_were(two_minutes: SimulatedCourse) -> None:
     planned = PlannedTest(TimedProtocol.TWO_MINUTES, lap_m=12.0)
-    one = simulate_course(replace(TWO_MINUTES, silent_s={Site.LEFT_FOOT: (60.0, 65.0)}))
-    assert held(one.session, planned).distance_source is DistanceSource.FOUND_LAPS
-    both = simulate_course(replace(TWO_MINUTES, silent_s=dict.fromkeys(FEET, (60.0, 65.0))))
-    found = held(both.session, planned)
+    one = held(silent(two_minutes, (Site.LEFT_FOOT,), 60.0, 65.0), planned)
+    assert one.distance_source is DistanceSource.FOUND_LAPS
+    found = held(silent(two_minutes, FEET, 60.0, 65.0), planned)
     assert np.isnan(found.distance_m)
     assert found.validity is Validity.NOT_CHECKED
 
@@ -305,9 +307,7 @@ def test_what_is_missing_is_named(ten_metres: SimulatedCourse, up_and_go: Simula
     unseen = replace(up_and_go.session, recordings=up_and_go.session.recordings[1:])
     assert NotMeasured.NO_THIGHS in timed(unseen, TimedProtocol.UP_AND_GO).missing
     # no feet: the chair's time stays
-    course = up_and_go.session.recordings[1]
-    thighs = {site: block for site, block in course.imu.items() if site not in FEET}
-    only = timed(with_course(up_and_go.session, replace(course, imu=thighs)), TimedProtocol.UP_AND_GO)
+    only = timed(without_feet(up_and_go), TimedProtocol.UP_AND_GO)
     assert only.missing == (NotMeasured.NO_FEET,)
     assert only.time_s > 0.0
     assert np.isnan(only.distance_m)
