@@ -21,14 +21,27 @@ from typing import Any, TypeVar
 import numpy as np
 
 from core.analysis import analyse
+from core.body import Site
 from core.results import Analysis
 from core.session import Session
 from core.signal.filters import FILTER
-from devices.simulation.walker import SimulatedSession, WalkerSettings, simulate
+from devices.simulation.walker import DEMONSTRATION, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 
 ROOT = Path(__file__).parents[1]
 T = TypeVar("T")
 OTHERS = 2
+
+# Who walked, for tests that need no more of anybody; whoever needs more states it where it asks.
+LONG_WALK = DEMONSTRATION
+"""Fourteen strides after free motion, with tissue: enough for a spread, a summary, a report."""
+SHORT_WALK = WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))
+"""Five strides of both legs, soon analysed: every joint has angles, and none a spread."""
+WALK_OF_ONE_LEG = replace(
+    DEMONSTRATION,
+    sites=(Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT),
+    recordings=(Standing(duration_s=2.0), Walk(strides=12)),
+)
+"""Twelve strides of the left leg, the soonest analysed: a knee, an ankle and a spread of both."""
 
 
 class Store:

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.alignment import (
@@ -130,6 +130,7 @@ def test_what_earlier_versions_wrote_reads_as_it_did() -> None:
     assert net_of(reported.parts)[0].switched == ()
 
 
+@settings(max_examples=40)
 @given(CHANGES, st.text(max_size=20))
 def test_a_change_comes_back_from_a_file_and_from_a_row(parts: list[PartChange], since: str) -> None:
     reported = AlignmentChange(since, tuple(parts))

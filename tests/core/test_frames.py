@@ -10,15 +10,14 @@ import pytest
 
 from core.body import Joint
 from core.results import Analysis, JointAngle
-from devices.simulation.walker import Standing, Walk, WalkerSettings
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SHORT_WALK, analysis_of, session_of
 
 ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
 def found() -> Analysis:
-    return analysis_of(session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))))
+    return analysis_of(session_of(SHORT_WALK))
 
 
 def test_each_table_has_its_columns_also_without_a_recording(found: Analysis) -> None:

@@ -7,21 +7,17 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out, left_out_by_hand
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk
-from tests.simulated import session_of
-
-LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
+from tests.simulated import WALK_OF_ONE_LEG, session_of
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    played = (Standing(duration_s=2.0), Walk(strides=12))
-    return session_of(replace(DEMONSTRATION, sites=LEFT_LEG, recordings=played))
+    return session_of(WALK_OF_ONE_LEG)
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Side
+from core.body import Side, Site
 from core.hip.leg_clock import ThighClock, leg_clock
 from core.hip.results import ClockStatus
 from tests.core.hip.hip_sessions import analysed
@@ -51,11 +51,12 @@ def test_what_tissue_may_be_and_what_is_proven_common_is_not_moved(offset_s: flo
 
 def test_clocks_that_are_reported_to_be_two_are_not_proven_by_their_stamps() -> None:
     made, _ = analysed()
+    hips = (Site.PELVIS, Site.LEFT_THIGH, Site.RIGHT_THIGH)
     sensors = {
-        site: replace(info, clock="right" if site.side is Side.RIGHT else "left")
-        for site, info in made.session.sensors.items()
+        site: replace(made.session.sensors[site], clock="right" if site.side is Side.RIGHT else "left") for site in hips
     }
-    clock = analyse(replace(made.session, sensors=sensors)).recordings[-1].leg_clock
+    recordings = tuple(replace(one, imu={site: one.imu[site] for site in hips}) for one in made.session.recordings)
+    clock = analyse(replace(made.session, sensors=sensors, recordings=recordings)).recordings[-1].leg_clock
     assert clock is not None
     assert clock.status is ClockStatus.FOUND
     assert abs(clock.offset_s) < 0.001

@@ -294,7 +294,10 @@ def test_a_clipped_accelerometer_is_reported(knee_visit: Session) -> None:
 def test_a_coarse_sensor_is_not_clipped_nor_stuck_nor_a_copy(errors: SensorErrors) -> None:
     recordings = (Standing(), Walk(standing_before_s=2.0, standing_after_s=2.0))
     for seed in range(2):
-        settings = WalkerSettings(seed, recordings, errors=errors, prosthetic_side=Side.LEFT, rate_hz=50.0 * (1 + seed))
+        rate_hz = 50.0 * (1 + seed)
+        settings = WalkerSettings(
+            seed, recordings, (THIGH, SHANK, FOOT), errors=errors, prosthetic_side=Side.LEFT, rate_hz=rate_hz
+        )
         assert not look_at(session_of(settings)).findings
 
 
@@ -317,7 +320,8 @@ def test_a_coarse_sensor_in_free_motion_has_a_range_wider_than_that() -> None:
 @pytest.mark.parametrize("rate_hz", [100.0, 200.0])
 def test_stamps_that_jitter_lack_no_samples(rate_hz: float) -> None:
     for seed in range(3):
-        settings = WalkerSettings(seed, (Standing(), Walk(strides=5)), rate_hz=rate_hz, stamp_jitter_s=0.001)
+        walk = (Standing(), Walk(strides=5))
+        settings = WalkerSettings(seed, walk, (THIGH, SHANK, FOOT), rate_hz=rate_hz, stamp_jitter_s=0.001)
         assert not look_at(session_of(settings)).findings
 
 
@@ -396,7 +400,8 @@ def test_gyroscopes_off_by_degrees_are_not_taken_for_reversed_accelerometers() -
 
 
 def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
-    session = session_of(replace(TURNING, recordings=(Standing(), FreeMotion(duration_s=5.0), Walk(strides=4))))
+    recordings = (Standing(), FreeMotion(duration_s=5.0), Walk(strides=4))
+    session = session_of(replace(TURNING, recordings=recordings, sites=(THIGH, SHANK, FOOT)))
     plain, mirrored = analyse(session), analyse(changed(session, REVERSED))
     assert reported(plain) == reported(mirrored)
     for one, other in zip(plain.recordings, mirrored.recordings, strict=True):

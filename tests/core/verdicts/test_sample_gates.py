@@ -11,7 +11,7 @@ import pytest
 
 from core.analysis import analyse
 from core.body import Joint, Side, Site
-from core.results import RecordingAnalysis
+from core.results import Analysis, RecordingAnalysis
 from core.samples import BoolArray, FloatArray, ImuBlock
 from core.session import Session
 from core.signal.reception import Reception
@@ -134,6 +134,11 @@ class Spoiler:
         return whole if self._keeps is None else whole.select(self._keeps)
 
 
+@cache
+def of_walked() -> Analysis:
+    return analyse(walked())
+
+
 def walk_in(session: Session) -> RecordingAnalysis:
     return analyse(session).recordings[-1]
 
@@ -168,14 +173,14 @@ def test_of_samples_lost_one_by_one_every_fifth_may_be_missing() -> None:
     lossy = walk_in(changed(left_shank=Spoiler(kept)))
     assert lossy.lost_percent[SHANK] == pytest.approx(20.0, abs=2.0)
     assert lossy.verdicts.joint(KNEE).shape.verdict in (Verdict.READ, Verdict.CARE)
-    ranges = [mean_of(found, "knee_range_deg") for found in (lossy, walk_in(walked()))]
+    ranges = [mean_of(found, "knee_range_deg") for found in (lossy, of_walked().recordings[-1])]
     assert ranges[0] == pytest.approx(ranges[1], abs=0.5)
 
 
 def test_a_pause_of_all_sensors_takes_nothing_else() -> None:
     out = np.abs(times_s() - np.mean(times_s())) > 1.6
-    session = changed(**{str(site): Spoiler(out) for site in (THIGH, SHANK, FOOT)})
-    paused, found = walk_in(session), analyse(session).findings
+    analysis = analyse(changed(**{str(site): Spoiler(out) for site in (THIGH, SHANK, FOOT)}))
+    paused, found = analysis.recordings[-1], analysis.findings
     assert {gate for _, gates in not_read(paused.verdicts).values() for gate in gates} <= {"strides"}
     (pause,) = (one for one in found if one.key == "pause")
     assert pause.numbers["length_s"] == pytest.approx(3.2, abs=0.05)
@@ -192,5 +197,4 @@ def test_a_sensor_at_half_its_rate_is_reported_though_its_stamps_show_no_gap() -
     knee = found.recordings[-1].verdicts.joint(KNEE).shape
     assert (knee.verdict, [reason.gate for reason in knee.reasons]) == (Verdict.NOT_REPORTED, ["every_second"])
     assert found.recordings[-1].lost_percent[SHANK] == pytest.approx(50.0)
-    reported = analyse(walked()).findings
-    assert {"every_second_lost", "rate_off"}.isdisjoint(one.key for one in reported)
+    assert {"every_second_lost", "rate_off"}.isdisjoint(one.key for one in of_walked().findings)

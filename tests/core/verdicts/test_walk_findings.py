@@ -18,14 +18,14 @@ from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.walk_findings import about_prosthesis, about_turns, about_walk
 from devices.simulation.walker import Standing, Walk, WalkerSettings
-from tests.simulated import session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 FEET: Mapping[Side, Site] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 
 
 @pytest.fixture(scope="module")
 def walk() -> RecordingAnalysis:
-    return analyse(session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=13))))).recordings[0]
+    return analysis_of(session_of(LONG_WALK)).recordings[-1]
 
 
 def with_used(gait: SideGait, used: int, otherwise: Reason = Reason.TURN) -> SideGait:

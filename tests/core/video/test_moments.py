@@ -16,8 +16,7 @@ from core.verdicts.model import READ, GateReason, JointVerdicts, Verdict, assess
 from core.video.clip import Clip, Sync, SyncBy
 from core.video.key_frames import KeyMoment, key_frames, value_deg
 from core.video.moments import Moment, moments_s
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
-from tests.simulated import analysis_of, session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 SURE = Sync(0.0, 0.01, SyncBy.MOTION)
 
@@ -37,8 +36,7 @@ class Numbered:
 
 @cache
 def walk() -> RecordingAnalysis:
-    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=1.15))
-    return analysis_of(session_of(replace(DEMONSTRATION, recordings=recordings))).recordings[-1]
+    return analysis_of(session_of(LONG_WALK)).recordings[-1]
 
 
 def clip(sync: Sync | None = SURE, later_s: float = 0.0, last_s: float = math.inf) -> Clip:
