@@ -1,40 +1,20 @@
 """Real sensors: mechanical joints against optics, and a person who jumps."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Site
+from core.body import LEG_JOINTS, Joint
 from core.findings import Severity
 from core.results import Analysis, JointAngle, JointCalibration
-from core.samples import FloatArray, ImuBlock
-from core.session import Recording, RecordingKind, Session
+from core.samples import FloatArray
 from core.signal.rotations import angle_between, joint_frame
+from tests.core.recorded_joints import UNTURNED, TestData, jumping_person, mechanism, session_of_mechanism
 
-TestData = Callable[[str], Path]
-SITES = (Site.LEFT_THIGH, Site.LEFT_SHANK)
 KNEE = Joint.LEFT_KNEE
-UNTURNED = Rotation.identity()
-
-
-def session(data: dict[str, FloatArray], turn_1: Rotation = UNTURNED, turn_2: Rotation = UNTURNED) -> Session:
-    """The two sensors worn as thigh and shank; `turn` is sensor from turned sensor."""
-    time_s = np.arange(len(data["acc1"])) / float(data["fs"])
-    imu = {
-        site: ImuBlock(str(site), time_s, turn.inv().apply(data[f"gyr{k}"]), turn.inv().apply(data[f"acc{k}"]))
-        for k, site, turn in ((1, SITES[0], turn_1), (2, SITES[1], turn_2))
-    }
-    return Session((Recording("hinge", RecordingKind.FREE_MOTION, "hinge", imu),))
-
-
-def load(test_data: TestData, name: str) -> dict[str, FloatArray]:
-    with np.load(test_data(f"hinge_mechanical/{name}.npz")) as archive:
-        return {key: np.asarray(archive[key], dtype=float) for key in archive.files}
 
 
 def calibration_of(found: Analysis) -> JointCalibration:
@@ -76,8 +56,8 @@ class Hinge:
 
 @pytest.fixture(scope="module", params=["1D_02", "1D_03"])
 def hinge(test_data: TestData, request: pytest.FixtureRequest) -> Hinge:
-    data = load(test_data, request.param)
-    return Hinge(data, analyse(session(data)))
+    data = mechanism(test_data, request.param)
+    return Hinge(data, analyse(session_of_mechanism(data)))
 
 
 def test_a_mechanical_hinge_is_called_one(hinge: Hinge) -> None:
@@ -122,10 +102,10 @@ def test_two_standard_deviations_hold_nine_samples_of_ten(hinge: Hinge) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_turning_either_sensor_leaves_the_angle_as_it_was(hinge: Hinge, seed: int) -> None:
     turns = list(Rotation.random(2, rng=np.random.default_rng(seed)))
-    turned = analyse(session(hinge.data, turns[0] if seed != 1 else UNTURNED, turns[1] if seed != 2 else UNTURNED))
+    turn_1, turn_2 = turns[0] if seed != 1 else UNTURNED, turns[1] if seed != 2 else UNTURNED
+    turned = analyse(session_of_mechanism(hinge.data, turn_1, turn_2))
     # free motion alone does not report the clinical sign, which may fall either way
-    back = turns[0] if seed != 1 else UNTURNED
-    axes = back.apply(calibration_of(turned).axis_proximal), calibration_of(hinge.found).axis_proximal
+    axes = turn_1.apply(calibration_of(turned).axis_proximal), calibration_of(hinge.found).axis_proximal
     signs = calibration_of(turned).clinical_sign * calibration_of(hinge.found).clinical_sign
     same = signs * float(np.sign(axes[0] @ axes[1]))
     difference = same * angle_of(turned).angle_rad - angle_of(hinge.found).angle_rad
@@ -135,7 +115,7 @@ def test_turning_either_sensor_leaves_the_angle_as_it_was(hinge: Hinge, seed: in
 
 @pytest.mark.parametrize("name", ["2D_02", "3D_02"])
 def test_two_and_three_axes_are_called_not_a_hinge(test_data: TestData, name: str) -> None:
-    found = analyse(session(load(test_data, name)))
+    found = analyse(session_of_mechanism(mechanism(test_data, name)))
     calibration = calibration_of(found)
     assert not calibration.is_hinge
     assert calibration.hinge_residual_rad_s is not None
@@ -143,18 +123,9 @@ def test_two_and_three_axes_are_called_not_a_hinge(test_data: TestData, name: st
     assert ("not_a_hinge", "left_knee") in {(f.key, f.where) for f in found.findings}
 
 
-BODY_PARTS = {Segment.THIGH: "upper_leg", Segment.SHANK: "lower_leg", Segment.FOOT: "foot"}
-
-
 @pytest.fixture(scope="module")
 def jumps(test_data: TestData) -> Analysis:
-    with np.load(test_data("full_body_free_motion/legs_arms.npz")) as data:
-        imu = {}
-        for site in LEG_SITES:
-            part = f"{BODY_PARTS[site.segment]}_{site.side}"
-            gyr, acc, q = (np.asarray(data[f"{part}_{signal}"], dtype=float) for signal in ("gyr", "acc", "quat"))
-            imu[site] = ImuBlock(part, np.asarray(data["t"], dtype=float), gyr, acc, q)
-    return analyse(Session((Recording("jumps", RecordingKind.FREE_MOTION, "jumps", imu),)))
+    return analyse(jumping_person(test_data, has_orientations=True))
 
 
 def test_jumps_run_through_with_an_angle_for_every_joint(jumps: Analysis) -> None:

@@ -1,11 +1,9 @@
 """Tests that the motion shows which sensor is where, with and against labels."""
 
 import time
-import xml.etree.ElementTree as ET
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from app.wording.findings import sentence
 from core.analysis import analyse
-from core.body import LEG_JOINTS, LEG_SITES, Segment, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 from core.findings import Severity
 from core.placement.chains import Chains, find_chains
 from core.placement.labels import doubted_labels, exchanged_sites
@@ -22,7 +20,6 @@ from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray, ImuBlock
 from core.session import Recording, RecordingKind, Session
-from devices.files.xsens_mtmanager import mtmanager_trial
 from devices.simulation.walker import (
     FreeMotion,
     Motion,
@@ -42,51 +39,23 @@ from tests.benchmarks.placement import (
     tracks_of,
     unlabelled,
 )
-from tests.trials_of_files import import_with
+from tests.core.recorded_joints import TestData, jumping_person, mechanism, session_of_mechanism, walking_person
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
-FindData = Callable[[str], Path]
 T, S, F = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 RT, RS, RF = Site.RIGHT_THIGH, Site.RIGHT_SHANK, Site.RIGHT_FOOT
-BODY_PARTS = {Segment.THIGH: "upper_leg", Segment.SHANK: "lower_leg", Segment.FOOT: "foot"}
-BONES = {"femur": "thigh", "tibia": "shank", "calcn": "foot"}
 EXCHANGES = [(T, S), (S, F), (T, F), (T, RT), (S, RS), (F, RF), (S, RT)]
 
 
 @pytest.fixture(scope="module")
-def jumps(test_data: FindData) -> Session:
-    """A person who moves freely and jumps, 100 s, without standing."""
-    with np.load(test_data("full_body_free_motion/legs_arms.npz")) as data:
-        imu = {}
-        for site in LEG_SITES:
-            part = f"{BODY_PARTS[site.segment]}_{site.side}"
-            gyr, acc = (np.asarray(data[f"{part}_{signal}"], dtype=float) for signal in ("gyr", "acc"))
-            imu[site] = ImuBlock(part, np.asarray(data["t"], dtype=float), gyr, acc)
-    return Session((Recording("jumps", RecordingKind.FREE_MOTION, "jumps", imu),))
+def jumping(test_data: TestData) -> Tracks:
+    return unlabelled(tracks_of(jumping_person(test_data)))[0]
 
 
 @pytest.fixture(scope="module")
-def real_walk(test_data: FindData) -> Session:
-    """A real walk of 24 s without standing, its rates derived from orientations."""
-    folder = test_data("vendor_exports/xsens_mtmanager")
-    placement = {}
-    for sensor in ET.parse(folder / "OpenSenseExample_myIMUMappings.xml").iter("ExperimentalSensor"):
-        bone, side, *_ = (sensor.findtext("name_in_model") or "").split("_")
-        if bone in BONES:
-            placement[Site(f"{'left' if side == 'l' else 'right'}_{BONES[bone]}")] = sensor.attrib["name"]
-    imported = import_with(mtmanager_trial, sorted(folder.glob("OpenSenseExample_*")), placement, "walk 1")
-    return Session((Recording("walk 1", RecordingKind.WALKING, "walk_1", imported.imu),))
-
-
-@pytest.fixture(scope="module")
-def jumping(jumps: Session) -> Tracks:
-    return unlabelled(tracks_of(jumps))[0]
-
-
-@pytest.fixture(scope="module")
-def walking(real_walk: Session) -> Tracks:
-    return unlabelled(tracks_of(real_walk))[0]
+def walking(test_data: TestData) -> Tracks:
+    return unlabelled(tracks_of(walking_person(test_data)))[0]
 
 
 def walked(*recordings: Standing | FreeMotion | Walk, seed: int = 4, tissue: Tissue = Tissue.SOFT) -> SimulatedSession:
@@ -167,17 +136,14 @@ def test_whole_legs_cannot_be_reported_apart(person: str, request: pytest.Fixtur
 
 
 @pytest.mark.parametrize("name", ["1D_02", "1D_03", "2D_02", "3D_02"])
-def test_a_hinge_turned_by_hand_has_no_upper_end(test_data: FindData, name: str) -> None:
-    with np.load(test_data(f"hinge_mechanical/{name}.npz")) as data:
-        time_s = np.arange(len(data["acc1"])) / float(data["fs"])
-        blocks = [ImuBlock("", time_s, data[f"gyr{k}"], data[f"acc{k}"]) for k in (1, 2)]
-    for one, two in (blocks, blocks[::-1]):
-        session = Session((Recording("hinge", RecordingKind.FREE_MOTION, "hinge", {T: one, S: two}),))
+def test_a_hinge_turned_by_hand_has_no_upper_end(test_data: TestData, name: str) -> None:
+    worn = session_of_mechanism(mechanism(test_data, name))
+    for session in (worn, swapped(worn, T, S)):
         assert doubted(session) == set()
         assert not chains_of(session, (T, S)).is_certain
 
 
-def test_two_feet_share_no_joint_to_be_doubted(test_data: FindData) -> None:
+def test_two_feet_share_no_joint_to_be_doubted(test_data: TestData) -> None:
     with np.load(test_data("feet_mocap_events/healthy_feet.npz"), allow_pickle=True) as data:
         time_s = np.arange(len(data["left_foot_acc"])) / float(data["fs"])
         imu = {

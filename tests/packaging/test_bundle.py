@@ -19,19 +19,19 @@ PACKAGING = ROOT / "packaging"
 PACKAGES = Path(sysconfig.get_path("purelib"))
 
 
-def module(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(PACKAGING)
-    return importlib.import_module(name)
+@pytest.fixture
+def parts() -> ModuleType:
+    return importlib.import_module("bundle_parts")
 
 
 @pytest.fixture
-def parts(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    return module("bundle_parts", monkeypatch)
+def packages() -> ModuleType:
+    return importlib.import_module("linux_packages")
 
 
 @pytest.fixture
-def packages(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    return module("linux_packages", monkeypatch)
+def build() -> ModuleType:
+    return importlib.import_module("build")
 
 
 def pins(lock: str) -> dict[str, str]:
@@ -245,14 +245,14 @@ def test_the_archive_states_which_libraries_a_bare_system_lacks(packages: Module
     assert "Not a medical device" in text
 
 
-def test_the_version_is_that_of_the_project(monkeypatch: pytest.MonkeyPatch) -> None:
-    build = module("build", monkeypatch)
+def test_the_version_is_that_of_the_project(build: ModuleType) -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert project["version"] == build.VERSION
 
 
-def test_an_environment_of_the_same_lock_is_used_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    build = module("build", monkeypatch)
+def test_an_environment_of_the_same_lock_is_used_again(
+    build: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     steps: list[str] = []
     monkeypatch.setattr(build, "run", lambda command, _environment=None: steps.append(" ".join(map(str, command))))
     monkeypatch.setattr(build.shutil, "rmtree", lambda *_, **__: None)

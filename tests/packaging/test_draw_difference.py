@@ -1,7 +1,6 @@
 """The manual's picture of differences shows one of each kind, judged by the limits in force."""
 
 import importlib
-from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -13,8 +12,7 @@ from core.verdicts.measurement_error import Judgement, Mark
 
 
 @pytest.fixture
-def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "packaging")
+def script() -> ModuleType:
     return importlib.import_module("draw_difference")
 
 

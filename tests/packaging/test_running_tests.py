@@ -21,7 +21,6 @@ def test_that_needs_a_quiet_computer():
 
 @pytest.fixture
 def running(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(PACKAGING)
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # each takes its time in three processes of a test
     spec = spec_from_file_location("running", PACKAGING / "test.py")  # Python has a module `test` of its own
     assert spec is not None

@@ -15,8 +15,7 @@ PACKAGING = Path(__file__).parents[2] / "packaging"
 
 
 @pytest.fixture
-def tables(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(PACKAGING)
+def tables() -> ModuleType:
     return importlib.import_module("safety_tables")
 
 

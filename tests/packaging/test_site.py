@@ -10,7 +10,9 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
+from types import ModuleType
 
 import pytest
 
@@ -32,39 +34,43 @@ FORMATS = ROOT / "packaging" / "site" / "pages" / "en" / "formats.md"
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def pages(site_pages: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The pages of both languages, as the site is built of them; but for the films, which are drawn later."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "packaging")
-        into = tmp_path_factory.mktemp("site")
-        importlib.import_module("site_pages").assemble(into)
+    into = tmp_path_factory.mktemp("site")
+    site_pages.assemble(into)
     return into
+
+
+@pytest.fixture(params=RECIPES)
+def language(request: pytest.FixtureRequest) -> Iterator[str]:
+    """Each language of the site, which is spoken meanwhile."""
+    use_language(request.param)
+    yield request.param
+    use_language("en")
+
+
+@pytest.fixture(scope="module")
+def site_pages() -> ModuleType:
+    return importlib.import_module("site_pages")
 
 
 def recipe(language: str) -> str:
     return (ROOT / "packaging" / "site" / RECIPES[language]).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("language", RECIPES)
 def test_every_page_is_once_in_the_list_of_its_site(language: str, pages: Path) -> None:
     listed = re.findall(r"[\w/-]+\.md", recipe(language).partition("nav:\n")[2])
     there = [page.relative_to(pages / language).as_posix() for page in (pages / language).rglob("*.md")]
     assert sorted(listed) == sorted(there)
 
 
-@pytest.mark.parametrize("language", RECIPES)
 def test_the_manual_has_the_order_and_the_groups_of_the_application(language: str) -> None:
     nav = recipe(language).partition("nav:\n")[2]
     assert re.findall(r"manual/([\w-]+)\.md", nav) == [str(topic) for topic in Topic]
-    use_language(language)
-    try:
-        required = [group_title(group) for group in TopicGroup]
-    finally:
-        use_language("en")
+    required = [group_title(group) for group in TopicGroup]
     assert re.findall(r"(?m)^ {6}- ([^:\n]+):", nav.partition("  - Reference")[0]) == required
 
 
-@pytest.mark.parametrize("language", RECIPES)
 def test_every_link_and_picture_leads_somewhere(language: str, pages: Path) -> None:
     films = {f"{film}{kind}" for film in Film for kind in (".webp", "-dark.webp", "-stills.png", "-dark-stills.png")}
     figures = {f"{script.stem}{dark}.svg" for script in FIGURES.glob("*.py") for dark in ("", "-dark")}
@@ -84,20 +90,15 @@ def test_every_link_and_picture_leads_somewhere(language: str, pages: Path) -> N
     assert lost == []
 
 
-@pytest.mark.parametrize("language", RECIPES)
 def test_what_the_scenes_of_a_film_show_is_in_words_below_it(language: str, pages: Path) -> None:
-    use_language(language)
-    try:
-        for film in Film:
-            (page,) = (
-                text
-                for file in (pages / language / "manual").glob("*.md")
-                if f"films/{film}" in (text := file.read_text(encoding="utf-8"))
-            )
-            below = page.partition("</details>")[2]
-            assert below.lstrip().startswith(captions(film))
-    finally:
-        use_language("en")
+    for film in Film:
+        (page,) = (
+            text
+            for file in (pages / language / "manual").glob("*.md")
+            if f"films/{film}" in (text := file.read_text(encoding="utf-8"))
+        )
+        below = page.partition("</details>")[2]
+        assert below.lstrip().startswith(captions(film))
 
 
 def test_each_example_is_a_page_with_its_words_and_all_of_its_code(pages: Path) -> None:
@@ -208,9 +209,8 @@ def test_readme_and_benchmarks_are_in_the_site_as_they_are_written(pages: Path) 
     assert [line for line in written.splitlines()[1:] if "](" not in line and line not in shown] == []
 
 
-def test_a_link_of_the_sources_leads_to_its_page_or_names_its_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
-    turned = importlib.import_module("site_pages").with_links_of_site
+def test_a_link_of_the_sources_leads_to_its_page_or_names_its_file(site_pages: ModuleType) -> None:
+    turned = site_pages.with_links_of_site
     text = "[a](resources/help/accuracy.md#x), [b](CONTRIBUTING.md), [c](https://example.org/), [d](tests/examples)"
     assert turned(text, PurePosixPath(), PurePosixPath("accuracy/index.md")) == (
         "[a](../manual/accuracy.md#x), b (`CONTRIBUTING.md` in the sources), [c](https://example.org/), "
@@ -221,11 +221,7 @@ def test_a_link_of_the_sources_leads_to_its_page_or_names_its_file(monkeypatch: 
     )
 
 
-def test_a_sentence_and_a_row_are_taken_from_their_page_and_from_no_other_place(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
-    site_pages = importlib.import_module("site_pages")
+def test_a_sentence_and_a_row_are_taken_from_their_page_and_from_no_other_place(site_pages: ModuleType) -> None:
     page = "- Zero is known to 3.5°. It moves.\n\n"
     page += "| Between | Knee | Stance | Speed |\n|---|---|---|---|\n| legs | 7.9° | 3 % | |\n"
     assert site_pages.sentence_of(page, "Zero is") == "Zero is known to 3.5°."
@@ -236,7 +232,6 @@ def test_a_sentence_and_a_row_are_taken_from_their_page_and_from_no_other_place(
             take(page, lacking)
 
 
-@pytest.mark.parametrize("language", RECIPES)
 def test_a_page_of_the_site_that_the_manual_names_is_linked(language: str, pages: Path) -> None:
     text = "".join(page.read_text(encoding="utf-8") for page in (pages / language / "manual").glob("*.md"))
     assert re.search("project's site|Website des Projekts", text) is None
@@ -245,7 +240,6 @@ def test_a_page_of_the_site_that_the_manual_names_is_linked(language: str, pages
         assert (pages / language / "reference" / f"{name}.md").is_file() or name == "formats"
 
 
-@pytest.mark.parametrize("language", RECIPES)
 def test_the_first_page_has_version_and_licence(language: str, pages: Path) -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     end = (pages / language / "index.md").read_text(encoding="utf-8").rpartition("\n## ")[2]
@@ -294,10 +288,7 @@ def test_german_pages_link_to_english_ones_that_are_there(pages: Path) -> None:
     assert [page for page in linked if not (pages / "en" / f"{page}.md").is_file()] == []
 
 
-def test_a_lost_link_and_what_is_loaded_from_elsewhere_are_found(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
+def test_a_lost_link_and_what_is_loaded_from_elsewhere_are_found(tmp_path: Path) -> None:
     links = importlib.import_module("site_links")
     (tmp_path / "b.html").write_text('<h1 id="here">B</h1>')
     (tmp_path / "a.html").write_text(
@@ -311,8 +302,7 @@ def test_a_lost_link_and_what_is_loaded_from_elsewhere_are_found(
     }
 
 
-def test_each_example_is_run_for_its_page_or_states_why_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
+def test_each_example_is_run_for_its_page_or_states_why_not() -> None:
     runs = importlib.import_module("site_examples")
     scripts = {one.stem for one in (ROOT / "tests" / "examples").glob("*.py")}
     assert {name for name in scripts if not name.startswith(("conftest", "test_"))} == {*runs.RUNS, *runs.WITHOUT}
@@ -320,7 +310,6 @@ def test_each_example_is_run_for_its_page_or_states_why_not(monkeypatch: pytest.
 
 @pytest.mark.endurance
 def test_the_site_is_built_strictly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
     builder = importlib.import_module("build_site")
     try:
         builder.builder()
@@ -351,11 +340,8 @@ def test_the_lock_of_the_site_holds_hashes_and_no_addresses() -> None:
     assert [entry for entry in entries if "--hash=sha256:" not in entry] == []
 
 
-def test_a_picture_is_shown_in_the_theme_in_force_and_a_film_where_it_is_asked_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
-    shown = importlib.import_module("site_pages").with_both_themes
+def test_a_picture_is_shown_in_the_theme_in_force_and_a_film_where_it_is_asked_for(site_pages: ModuleType) -> None:
+    shown = site_pages.with_both_themes
     assert shown("![Words](a.svg)", "Play") == "![Words](a.svg#only-light)![Words](a-dark.svg#only-dark)"
     picture = shown("![Words](pictures/a.png)", "Play")
     assert picture == "![Words](pictures/a.png#only-light)![Words](pictures/a-dark.png#only-dark)"

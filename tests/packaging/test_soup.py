@@ -14,8 +14,7 @@ PROJECT = "gaitwright"
 
 
 @pytest.fixture
-def soup(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(PACKAGING)
+def soup() -> ModuleType:
     return importlib.import_module("soup")
 
 

@@ -22,7 +22,6 @@ def set_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     for lock in ("requirements.lock", "runtime.lock"):
         (tmp_path / "packaging" / lock).write_text(lock)
     (tmp_path / "pyproject.toml").write_text("")
-    monkeypatch.syspath_prepend(PACKAGING)
     module = importlib.import_module("setup_environment")
     steps: list[str] = []
 

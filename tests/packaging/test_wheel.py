@@ -23,9 +23,7 @@ STRANGERS = ("app", "core", "devices")
 
 @pytest.fixture(scope="module")
 def backend() -> ModuleType:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "packaging")
-        return importlib.import_module("wheel_backend")
+    return importlib.import_module("wheel_backend")
 
 
 def test_every_import_and_every_name_of_a_module_is_moved(backend: ModuleType) -> None:

@@ -12,8 +12,8 @@ from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 from core.calibration.strap import Slip, slips, turns_over
 from core.gait.strides import Reason
 from core.results import Method
-from core.samples import ImuBlock, RateKind
-from core.session import Session
+from core.samples import RateKind
+from core.session import Recording, Session
 from core.signal.sensors import SensorTracks
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import (
@@ -48,17 +48,18 @@ def patient(tissue: Tissue, turn_rad: float) -> SimulatedSession:
 def slipped(session: Session, site: Site, angle_rad: float, at_s: float = SLIP_S) -> Session:
     """The same session, with the sensor turned about its limb from `at_s` of the walk on."""
     standing, free_motion, walk = session.recordings
-    up = standing.imu[site].acc_m_s2.mean(axis=0)
-    turn = Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up)).as_matrix()
-    imu = {**walk.imu, site: turned(walk.imu[site], turn, at_s)}
-    return replace(session, recordings=(standing, free_motion, replace(walk, imu=imu)))
+    return replace(session, recordings=(standing, free_motion, turned(walk, standing, site, angle_rad, at_s)))
 
 
-def turned(block: ImuBlock, turn: np.ndarray, at_s: float) -> ImuBlock:
-    gyr, acc = block.gyr_rad_s.copy(), block.acc_m_s2.copy()
-    late = block.time_s >= at_s
-    gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
-    return replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
+def turned(
+    recording: Recording, standing: Recording, site: Site, angle_rad: float, from_s: float = -np.inf
+) -> Recording:
+    """With a sensor turned about what is up in standing."""
+    up, block = standing.imu[site].acc_m_s2.mean(axis=0), recording.imu[site]
+    turn = Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up))
+    late = (block.time_s >= from_s)[:, None]
+    gyr, acc = (np.where(late, turn.apply(values), values) for values in (block.gyr_rad_s, block.acc_m_s2))
+    return replace(recording, imu={**recording.imu, site: replace(block, gyr_rad_s=gyr, acc_m_s2=acc)})
 
 
 def found_in(session: Session, simulated: SimulatedSession) -> list[Slip]:
@@ -139,11 +140,8 @@ def test_a_slip_holds_until_the_next_free_motion_not_the_next_standing(
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=32), between, Walk("walk 2"))
     session = session_of(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT))
     early, late = session.recordings[:3], session.recordings[3:]
-    site = Site.LEFT_SHANK
-    up = early[0].imu[site].acc_m_s2.mean(axis=0)
-    turn = Rotation.from_rotvec(np.deg2rad(15.0) * up / np.linalg.norm(up)).as_matrix()
-    early = slipped(replace(session, recordings=early), site, np.deg2rad(15.0)).recordings
-    late = tuple(replace(one, imu={**one.imu, site: turned(one.imu[site], turn, 0.0)}) for one in late)
+    late = tuple(turned(one, early[0], Site.LEFT_SHANK, np.deg2rad(15.0)) for one in late)
+    early = slipped(replace(session, recordings=early), Site.LEFT_SHANK, np.deg2rad(15.0)).recordings
     analysis = analyse(replace(session, recordings=early + late))
     assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == [f"{WALK}, left_shank"]
     strides = {side: gait.strides for side, gait in analysis.recordings[-1].gait.items()}
@@ -169,11 +167,9 @@ def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_reporte
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=14), Walk("walk 2", strides=14, speed_m_s=0.8))
     session = session_of(WalkerSettings(seed=seed, recordings=recordings, tissue=Tissue.SOFT))
     assert "strap_slipped" not in {one.key for one in analyse(session).findings}
-    site, second = Site.LEFT_THIGH, session.recordings[-1]
-    up = session.recordings[0].imu[site].acc_m_s2.mean(axis=0)
-    turn = Rotation.from_rotvec(np.deg2rad(15.0) * up / np.linalg.norm(up)).as_matrix()
-    second = replace(second, imu={**second.imu, site: turned(second.imu[site], turn, 0.0)})
-    analysis = analyse(replace(session, recordings=(*session.recordings[:-1], second)))
+    *before, second = session.recordings
+    second = turned(second, before[0], Site.LEFT_THIGH, np.deg2rad(15.0))
+    analysis = analyse(replace(session, recordings=(*before, second)))
     assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == ["walk 2, left_thigh"]
 
 
@@ -191,7 +187,5 @@ def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_ne
     assert "rises" in reported(None, session)
     assert reported(rising, session) == []
     *before, last = session.recordings
-    up = before[0].imu[Site.RIGHT_SHANK].acc_m_s2.mean(axis=0)
-    turn = Rotation.from_rotvec(np.deg2rad(20.0) * up / np.linalg.norm(up)).as_matrix()
-    imu = {**last.imu, Site.RIGHT_SHANK: turned(last.imu[Site.RIGHT_SHANK], turn, -np.inf)}
-    assert reported(rising, replace(session, recordings=(*before, replace(last, imu=imu)))) == ["walk 2"]
+    last = turned(last, before[0], Site.RIGHT_SHANK, np.deg2rad(20.0))
+    assert reported(rising, replace(session, recordings=(*before, last))) == ["walk 2"]

@@ -1,9 +1,8 @@
 """The live joint angle against the offline one with the same calibration, and what may not change it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,16 +21,16 @@ from core.live.pairing import MAX_WAIT_S, Pairing
 from core.live.streams import EvenStream
 from core.results import AxisSource, JointCalibration
 from core.samples import FloatArray, ImuBlock, RateKind
-from core.session import Recording, RecordingKind, Session
+from core.session import Recording
 from core.signal.pair import OrientedTrack, pair_up
 from core.signal.rotations import joint_frame, wrap
 from core.signal.tracks import Track
 from devices.simulation.walker import FreeMotion, JointTruth, Standing, Tissue, Walk, WalkerSettings
+from tests.core.recorded_joints import TestData, mechanism, session_of_mechanism
 from tests.simulated import simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
-TestData = Callable[[str], Path]
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 SITES = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 SCORED_FROM_S = 3.0
@@ -166,16 +165,12 @@ def test_two_standard_deviations_hold_nine_samples_of_ten_of_the_truth(soft: Liv
 
 @pytest.mark.parametrize("name", ["1D_02", "1D_03"])
 def test_a_mechanical_hinge_is_followed_to_half_a_degree(test_data: TestData, name: str) -> None:
-    with np.load(test_data(f"hinge_mechanical/{name}.npz")) as archive:
-        data = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
-    rate_hz = float(data["fs"])
-    time_s = np.arange(len(data["acc1"])) / rate_hz
-    sites = (KNEE.proximal, KNEE.distal)
-    imu = {s: ImuBlock(str(s), time_s, data[f"gyr{k}"], data[f"acc{k}"]) for k, s in enumerate(sites, start=1)}
-    recording = Recording("hinge", RecordingKind.FREE_MOTION, "hinge", imu)
-    found = analyse(Session((recording,)))
+    data = mechanism(test_data, name)
+    session = session_of_mechanism(data)
+    found, (recording,) = analyse(session), session.recordings
+    rates_hz, time_s = dict.fromkeys(recording.imu, float(data["fs"])), recording.imu[KNEE.proximal].time_s
     offline = {KNEE: found.recordings[0].joints[KNEE].angle_rad}
-    one = LiveVisit(recording, dict.fromkeys(sites, rate_hz), found.calibrations[0].joints, time_s, offline, {})
+    one = LiveVisit(recording, rates_hz, found.calibrations[0].joints, time_s, offline, {})
     assert rmse_deg(one, KNEE, followed(one, KNEE)) < 0.5
 
 

@@ -3,9 +3,7 @@
 Where all of the truth is known, it agrees with that too.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +11,10 @@ import pytest
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.results import Analysis, Method
-from core.samples import ImuBlock
-from core.session import Recording, RecordingKind, Session
+from core.session import Session
 from core.verdicts.diagnostics import diagnostics_of
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.core.recorded_joints import TestData, mechanism, session_of_mechanism
 from tests.simulated import simulation_of
 
 KNEE = Joint.LEFT_KNEE
@@ -49,13 +47,9 @@ def test_a_recording_without_the_joint_shows_nothing(knee_visit: Session, analys
 
 
 @pytest.mark.endurance  # a second of a real hinge
-def test_on_a_real_hinge_the_pictures_agree_with_optics(test_data: Callable[[str], Path]) -> None:
-    with np.load(test_data("hinge_mechanical/1D_02.npz")) as archive:
-        data = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
-    time_s = np.arange(len(data["acc1"])) / float(data["fs"])
-    sites = enumerate((KNEE.proximal, KNEE.distal), start=1)
-    imu = {site: ImuBlock(str(site), time_s, data[f"gyr{k}"], data[f"acc{k}"]) for k, site in sites}
-    session = Session((Recording("hinge", RecordingKind.FREE_MOTION, "hinge", imu),))
+def test_on_a_real_hinge_the_pictures_agree_with_optics(test_data: TestData) -> None:
+    data = mechanism(test_data, "1D_02")
+    session = session_of_mechanism(data)
     found = diagnostics_of(session, analyse(session).calibrations[0].joints[KNEE], "hinge")
     assert found is not None
     assert abs(found.costs[0].lowest @ data["j1_ref"]) > np.cos(np.deg2rad(1.0))

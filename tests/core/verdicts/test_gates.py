@@ -15,10 +15,10 @@ from core.gait.clocks import ClockTie
 from core.gait.strides import Reason
 from core.results import Analysis, AxisHalves, Calibration, Method, RecordingAnalysis, ZeroKind
 from core.session import RecordingKind
-from core.timed.found import TimedTest
 from core.timed.protocols import TimedProtocol
 from core.verdicts.gates import judged, verdicts_of
 from core.verdicts.model import GateReason, Verdict, Verdicts
+from tests.core.timed.built_tests import built_test
 from tests.core.verdicts.built_walk import SURE_CLOCKS, calibrations, leg, not_read, walk
 
 KNEE, ANKLE = "left_knee", "left_ankle"
@@ -149,9 +149,7 @@ def test_axes_that_come_out_apart_in_two_parts_hit_their_own_joint_alone(
     gate = "axis_motions" if is_free_motion else "axis_halves"
     closed = hits(verdict, gate, ANKLE, *SHAPE_HEIGHT) if verdict else {}
     assert not_read(gates_of(walk(axis_halves=halves))) == closed
-    nothing: tuple[Any, ...] = ((),) * 8
-    timed = TimedTest(TimedProtocol.TWO_MINUTES, 0.0, 120.0, False, False, 100.0, 100.0, 100.0, *nothing)
-    assert not_read(gates_of(walk(axis_halves=halves, timed=timed))) == closed
+    assert not_read(gates_of(walk(axis_halves=halves, timed=built_test(TimedProtocol.TWO_MINUTES)))) == closed
 
 
 def test_a_foot_sensor_that_may_be_on_another_foot_puts_its_legs_strides_in_doubt() -> None:

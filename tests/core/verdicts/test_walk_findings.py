@@ -13,11 +13,12 @@ from core.gait.strides import Reason, Strides, strides_of
 from core.hip.results import PelvisAngles, PelvisTurn
 from core.results import RecordingAnalysis, SideGait
 from core.session import RecordingKind
-from core.timed.found import TimedTest, Turn
+from core.timed.found import Turn
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.walk_findings import about_prosthesis, about_turns, about_walk
 from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.core.timed.built_tests import built_test
 from tests.simulated import LONG_WALK, analysis_of, session_of
 
 FEET: Mapping[Side, Site] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
@@ -126,23 +127,7 @@ def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_reported(typed: st
 
 def timed_walk(walk: RecordingAnalysis, feet: tuple[Turn, ...], pelvis: tuple[PelvisTurn, ...]) -> RecordingAnalysis:
     unknown = np.full(len(walk.time_s), np.nan)
-    test = TimedTest(
-        protocol=TimedProtocol.UP_AND_GO,
-        start_s=1.0,
-        end_s=20.0,
-        is_start_by_key=False,
-        is_end_by_key=False,
-        distance_m=6.0,
-        sensor_distance_m=6.0,
-        cadence_steps_min=100.0,
-        turns=feet,
-        pauses_s=(),
-        laps=(),
-        thirds=(),
-        rises=(),
-        silences=(),
-        missing=(),
-    )
+    test = replace(built_test(TimedProtocol.UP_AND_GO, time_s=19.0, distance_m=6.0), turns=feet)
     return replace(walk, timed=test, turns=pelvis, pelvis=PelvisAngles(unknown, unknown, unknown))
 
 
