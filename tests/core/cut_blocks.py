@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from core.body import LEG_SITES, Site
 from core.samples import ImuBlock
@@ -31,6 +32,19 @@ def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITE
         imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
         recordings.append(replace(r, imu=imu))
     return replace(session, recordings=tuple(recordings))
+
+
+def turned(block: ImuBlock, turn: Rotation, from_s: float = -np.inf) -> ImuBlock:
+    """The sensor turned in its mounting, from an instant on."""
+    late = (block.time_s >= from_s)[:, None]
+    gyr, acc = (np.where(late, turn.apply(values), values) for values in (block.gyr_rad_s, block.acc_m_s2))
+    return replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
+
+
+def about_the_vertical(standing: ImuBlock, angle_rad: float) -> Rotation:
+    """A turn about what is up for a sensor that stands still."""
+    up = standing.acc_m_s2.mean(axis=0)
+    return Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up))
 
 
 def first(n: int) -> Change:

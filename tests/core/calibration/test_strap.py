@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
 from core.angles.measure import pairs_of
@@ -26,7 +25,7 @@ from devices.simulation.walker import (
     Walk,
     WalkerSettings,
 )
-from tests.core.cut_blocks import part_of
+from tests.core.cut_blocks import about_the_vertical, part_of, turned
 from tests.simulated import session_of, simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -48,18 +47,14 @@ def patient(tissue: Tissue, turn_rad: float) -> SimulatedSession:
 def slipped(session: Session, site: Site, angle_rad: float, at_s: float = SLIP_S) -> Session:
     """The same session, with the sensor turned about its limb from `at_s` of the walk on."""
     standing, free_motion, walk = session.recordings
-    return replace(session, recordings=(standing, free_motion, turned(walk, standing, site, angle_rad, at_s)))
+    return replace(session, recordings=(standing, free_motion, with_turned(walk, standing, site, angle_rad, at_s)))
 
 
-def turned(
+def with_turned(
     recording: Recording, standing: Recording, site: Site, angle_rad: float, from_s: float = -np.inf
 ) -> Recording:
-    """With a sensor turned about what is up in standing."""
-    up, block = standing.imu[site].acc_m_s2.mean(axis=0), recording.imu[site]
-    turn = Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up))
-    late = (block.time_s >= from_s)[:, None]
-    gyr, acc = (np.where(late, turn.apply(values), values) for values in (block.gyr_rad_s, block.acc_m_s2))
-    return replace(recording, imu={**recording.imu, site: replace(block, gyr_rad_s=gyr, acc_m_s2=acc)})
+    turn = about_the_vertical(standing.imu[site], angle_rad)
+    return replace(recording, imu={**recording.imu, site: turned(recording.imu[site], turn, from_s)})
 
 
 def found_in(session: Session, simulated: SimulatedSession) -> list[Slip]:
@@ -140,7 +135,7 @@ def test_a_slip_holds_until_the_next_free_motion_not_the_next_standing(
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=32), between, Walk("walk 2"))
     session = session_of(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT))
     early, late = session.recordings[:3], session.recordings[3:]
-    late = tuple(turned(one, early[0], Site.LEFT_SHANK, np.deg2rad(15.0)) for one in late)
+    late = tuple(with_turned(one, early[0], Site.LEFT_SHANK, np.deg2rad(15.0)) for one in late)
     early = slipped(replace(session, recordings=early), Site.LEFT_SHANK, np.deg2rad(15.0)).recordings
     analysis = analyse(replace(session, recordings=early + late))
     assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == [f"{WALK}, left_shank"]
@@ -168,7 +163,7 @@ def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_reporte
     session = session_of(WalkerSettings(seed=seed, recordings=recordings, tissue=Tissue.SOFT))
     assert "strap_slipped" not in {one.key for one in analyse(session).findings}
     *before, second = session.recordings
-    second = turned(second, before[0], Site.LEFT_THIGH, np.deg2rad(15.0))
+    second = with_turned(second, before[0], Site.LEFT_THIGH, np.deg2rad(15.0))
     analysis = analyse(replace(session, recordings=(*before, second)))
     assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == ["walk 2, left_thigh"]
 
@@ -187,5 +182,5 @@ def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_ne
     assert "rises" in reported(None, session)
     assert reported(rising, session) == []
     *before, last = session.recordings
-    last = turned(last, before[0], Site.RIGHT_SHANK, np.deg2rad(20.0))
+    last = with_turned(last, before[0], Site.RIGHT_SHANK, np.deg2rad(20.0))
     assert reported(rising, replace(session, recordings=(*before, last))) == ["walk 2"]

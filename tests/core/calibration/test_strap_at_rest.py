@@ -12,6 +12,7 @@ from core.samples import RateKind
 from core.session import Session
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.core.cut_blocks import turned
 from tests.simulated import session_of
 
 FOOT, SHANK = Site.LEFT_FOOT, Site.LEFT_SHANK
@@ -32,17 +33,13 @@ def refuted(session: Session, site: Site, turn_deg: float) -> bool:
 def with_foot_turned(session: Session, turn_deg: float, slope_deg: float) -> Session:
     """The foot's sensor turned about a line that leans by `slope_deg` from the vertical, after the slip."""
     standing, walk = session.recordings
-    block = walk.imu[FOOT]
     up = standing.imu[FOOT].acc_m_s2.mean(axis=0)
     up /= np.linalg.norm(up)
     across = np.cross(up, [1.0, 0.0, 0.0])
     across /= np.linalg.norm(across)
     line = np.cos(np.deg2rad(slope_deg)) * up + np.sin(np.deg2rad(slope_deg)) * across
-    turn = Rotation.from_rotvec(np.deg2rad(turn_deg) * line).as_matrix()
-    late = block.time_s >= SLIP_S
-    gyr, acc = block.gyr_rad_s.copy(), block.acc_m_s2.copy()
-    gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
-    imu = {**walk.imu, FOOT: replace(block, gyr_rad_s=gyr, acc_m_s2=acc)}
+    foot = turned(walk.imu[FOOT], Rotation.from_rotvec(np.deg2rad(turn_deg) * line), SLIP_S)
+    imu = {**walk.imu, FOOT: foot}
     return replace(session, recordings=(standing, replace(walk, imu=imu)))
 
 

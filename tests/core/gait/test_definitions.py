@@ -20,6 +20,7 @@ from core.samples import FloatArray
 from core.signal.robust import robust_sd
 from devices.simulation.walker import Standing, Walk, WalkerSettings
 from tests.core.gait.feet import foot_of
+from tests.core.gait.test_strides import events_at
 from tests.core.standing import bias_of
 from tests.simulated import simulation_of
 
@@ -132,21 +133,7 @@ def walk(length_m: FloatArray, stride_s: FloatArray | None = None) -> FootEvents
     """A foot's events of straight strides of these lengths, and a contact before the first."""
     times = np.full(len(length_m), 1.1) if stride_s is None else stride_s
     contact = 1.0 + np.concatenate([[0.0], np.cumsum(times)])
-    n = len(contact)
-    return FootEvents(
-        heel_rise_s=contact - 0.7,
-        toe_off_s=contact - 0.42,
-        initial_contact_s=contact,
-        full_contact_s=contact + 0.1,
-        length_m=np.concatenate([[length_m[0]], length_m]),
-        height_m=np.full(n, 0.1),
-        climb_m=np.zeros(n),
-        turn_rad=np.zeros(n),
-        is_certain=np.ones(n, dtype=bool),
-        is_measured=np.ones(n, dtype=bool),
-        source=np.ones((n, 4), dtype=np.int64),
-        sd_s=np.full((n, 4), 0.01),
-    )
+    return events_at(contact, np.concatenate([[length_m[0]], length_m]))
 
 
 @pytest.mark.parametrize(("odd_m", "is_outlier"), [(1.21, False), (1.25, True), (0.79, False), (0.75, True)])

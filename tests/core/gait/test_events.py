@@ -17,6 +17,7 @@ from core.gait.foot import FootMotion
 from core.gait.sole import SoleTravel, travel_of
 from core.samples import BoolArray, FloatArray, ImuBlock
 from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings
+from tests.core.cut_blocks import turned as turned_block
 from tests.core.gait.feet import foot_of
 from tests.core.standing import bias_of
 from tests.simulated import simulation_of
@@ -30,7 +31,7 @@ def walk_of(settings: WalkerSettings, turn: Rotation | None = None) -> tuple[Foo
     made = simulation_of(replace(settings, sites=(FOOT,)))
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
     if turn is not None:
-        blocks = [replace(b, gyr_rad_s=turn.apply(b.gyr_rad_s), acc_m_s2=turn.apply(b.acc_m_s2)) for b in blocks]
+        blocks = [turned_block(block, turn) for block in blocks]
     return gait_of(foot_of(blocks[1], bias_of(blocks[0]))), made.truth.recordings["walk 1"].feet[Side.LEFT]
 
 

@@ -15,6 +15,7 @@ from core.gait.phases import Phase
 from core.samples import FloatArray, ImuBlock
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from devices.simulation.walker_motion import TrueFootEvents
+from tests.core.cut_blocks import turned
 from tests.simulated import session_of, simulation_of
 
 SITE = Site.LEFT_FOOT
@@ -124,9 +125,7 @@ def test_however_the_sensor_is_mounted_the_events_are_the_same(
     usual: tuple[ImuBlock, TrueFootEvents], rotvec: tuple[float, float, float]
 ) -> None:
     block, _ = usual
-    turn = Rotation.from_rotvec(rotvec)
-    turned = ImuBlock(block.sensor, block.time_s, turn.apply(block.gyr_rad_s), turn.apply(block.acc_m_s2))
-    one, other = reported_of(block), reported_of(turned)
+    one, other = reported_of(block), reported_of(turned(block, Rotation.from_rotvec(rotvec)))
     assert [e.event for e in one] == [e.event for e in other]
     np.testing.assert_allclose([e.time_s for e in one], [e.time_s for e in other], atol=1e-6)
 

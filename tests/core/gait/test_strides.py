@@ -9,18 +9,20 @@ from core.gait.events import FootEvents
 from core.gait.phases import PHASES, Phase, phases_at
 from core.gait.spatiotemporal import both_feet, mean_and_sd, parameters_of
 from core.gait.strides import Reason, Strides, strides_of
+from core.samples import FloatArray
 
 STRIDE_S, SWING_S = 1.1, 0.42
 
 
-def feet_events(contacts: int = 12, first_s: float = 1.0, length_m: float = 1.3) -> FootEvents:
-    contact = first_s + STRIDE_S * np.arange(contacts)
+def events_at(contact: FloatArray, length_m: FloatArray) -> FootEvents:
+    """The events of a foot that makes contact at these instants, s."""
+    contacts = len(contact)
     return FootEvents(
         heel_rise_s=contact - 0.7,
         toe_off_s=contact - SWING_S,
         initial_contact_s=contact,
         full_contact_s=contact + 0.1,
-        length_m=np.full(contacts, length_m),
+        length_m=length_m,
         height_m=np.full(contacts, 0.1),
         climb_m=np.zeros(contacts),
         turn_rad=np.zeros(contacts),
@@ -29,6 +31,10 @@ def feet_events(contacts: int = 12, first_s: float = 1.0, length_m: float = 1.3)
         source=np.ones((contacts, 4), dtype=np.int64),
         sd_s=np.full((contacts, 4), 0.01),
     )
+
+
+def feet_events(contacts: int = 12, first_s: float = 1.0, length_m: float = 1.3) -> FootEvents:
+    return events_at(first_s + STRIDE_S * np.arange(contacts), np.full(contacts, length_m))
 
 
 def later(events: FootEvents, from_row: int, by_s: float) -> FootEvents:
@@ -62,34 +68,40 @@ def test_no_events_are_no_strides() -> None:
     assert np.isnan(both_feet(strides_of([]), strides_of([])).cadence_steps_min)
 
 
-def test_a_turn_and_doubtful_events_drop_their_strides_only() -> None:
+def with_rows(**rows: dict[int, float]) -> FootEvents:
+    """The walk with some rows of some columns changed, the last one's number being -1."""
     events = feet_events()
-    turn, certain = events.turn_rad.copy(), events.is_certain.copy()
-    turn[4], certain[8] = np.deg2rad(-35.0), False
-    strides = strides_of([replace(events, turn_rad=turn, is_certain=certain)])
-    assert reasons(strides) == {3: Reason.TURN, 7: Reason.DOUBT, 8: Reason.DOUBT}
+    columns = {name: getattr(events, name).copy() for name in rows}
+    for name, values in rows.items():
+        columns[name][list(values)] = list(values.values())
+    return replace(events, **columns)
 
 
-def test_missing_samples_drop_the_strides_they_touch() -> None:
-    events = feet_events()
-    measured = events.is_measured.copy()
-    measured[5] = False
-    assert reasons(strides_of([replace(events, is_measured=measured)])) == {4: Reason.GAP, 5: Reason.GAP}
+LEFT_OUT = {
+    "a turn and doubtful events drop their strides only": (
+        with_rows(turn_rad={4: np.deg2rad(-35.0)}, is_certain={8: False}),
+        {3: Reason.TURN, 7: Reason.DOUBT, 8: Reason.DOUBT},
+    ),
+    "missing samples drop the strides they touch": (
+        with_rows(is_measured={5: False}),
+        {4: Reason.GAP, 5: Reason.GAP},
+    ),
+    "the first and last strides where they are slower": (
+        with_rows(length_m={1: 0.9, -1: 0.7}),
+        {0: Reason.START, 10: Reason.STOP},
+    ),
+    "a last step that hardly rolls is a stop and no doubt": (
+        with_rows(length_m={-1: 0.7}, is_certain={-1: False, 5: False}),
+        {4: Reason.DOUBT, 5: Reason.DOUBT, 10: Reason.STOP},
+    ),
+    "a stride unlike the others is an outlier": (with_rows(length_m={6: 1.8}), {5: Reason.OUTLIER}),
+}
 
 
-def test_first_and_last_strides_are_left_out_only_where_they_are_slower() -> None:
-    events = feet_events()
-    length = events.length_m.copy()
-    length[1], length[-1] = 0.9, 0.7
-    assert reasons(strides_of([replace(events, length_m=length)])) == {0: Reason.START, 10: Reason.STOP}
-
-
-def test_a_last_step_that_hardly_rolls_is_a_stop_and_no_doubt() -> None:
-    events = feet_events()
-    length, certain = events.length_m.copy(), events.is_certain.copy()
-    length[-1], certain[-1], certain[5] = 0.7, False, False
-    strides = strides_of([replace(events, length_m=length, is_certain=certain)])
-    assert reasons(strides) == {4: Reason.DOUBT, 5: Reason.DOUBT, 10: Reason.STOP}
+@pytest.mark.parametrize("case", LEFT_OUT)
+def test_a_stride_that_shows_no_walking_is_left_out_with_its_reason(case: str) -> None:
+    events, expected = LEFT_OUT[case]
+    assert reasons(strides_of([events])) == expected
 
 
 def test_standing_ends_a_bout_and_a_short_pause_is_a_pause() -> None:
@@ -99,18 +111,8 @@ def test_standing_ends_a_bout_and_a_short_pause_is_a_pause() -> None:
     assert reasons(strides_of([later(feet_events(), 6, 0.8)])) == {5: Reason.PAUSE}
 
 
-def test_a_stride_unlike_the_others_is_an_outlier() -> None:
-    events = feet_events()
-    length = events.length_m.copy()
-    length[6] = 1.8
-    assert reasons(strides_of([replace(events, length_m=length)])) == {5: Reason.OUTLIER}
-
-
 def test_an_unknown_heel_rise_costs_its_phases_and_no_stride() -> None:
-    events = feet_events()
-    rise, full = events.heel_rise_s.copy(), events.full_contact_s.copy()
-    rise[4] = full[6] = np.nan
-    reported = replace(events, heel_rise_s=rise, full_contact_s=full)
+    reported = with_rows(heel_rise_s={4: np.nan}, full_contact_s={6: np.nan})
     strides = strides_of([reported])
     assert strides.is_used.all()
     assert np.flatnonzero(np.isnan(strides.heel_rise_s)).tolist() == [3]
@@ -118,7 +120,7 @@ def test_an_unknown_heel_rise_costs_its_phases_and_no_stride() -> None:
     values = parameters_of(strides, None)
     assert mean_and_sd(values["stance_percent"]).n == mean_and_sd(values["stride_time_s"]).n == len(strides)
     # in the stride without heel rise: loading, then unknown until swing; in that without full contact: unknown first
-    at_s = events.initial_contact_s[[3, 3, 3, 6, 6, 6]] + [0.05, 0.3, 0.8, 0.05, 0.5, 0.8]
+    at_s = reported.initial_contact_s[[3, 3, 3, 6, 6, 6]] + [0.05, 0.3, 0.8, 0.05, 0.5, 0.8]
     expected = [Phase.LOADING, Phase.UNKNOWN, Phase.SWING, Phase.UNKNOWN, Phase.PRE_SWING, Phase.SWING]
     assert [PHASES[k] for k in phases_at(at_s, [reported])] == expected
 

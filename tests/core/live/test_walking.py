@@ -1,11 +1,9 @@
 """A whole walk, live: the angles, phases and slips of both legs, whatever the blocks."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
@@ -16,7 +14,7 @@ from core.results import Analysis, JointCalibration
 from core.samples import ImuBlock
 from core.session import Recording
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
-from tests.core.cut_blocks import in_blocks
+from tests.core.cut_blocks import about_the_vertical, in_blocks, turned
 from tests.core.standing import live_sensors
 from tests.simulated import simulation_of
 
@@ -148,13 +146,9 @@ def test_a_strap_that_slips_is_reported_during_the_walk(
     made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
 ) -> None:
     site, slip_s = Site.LEFT_SHANK, 11.0
-    up = made.session.recordings[0].imu[site].acc_m_s2.mean(axis=0)
-    turn = Rotation.from_rotvec(np.deg2rad(20.0) * up / np.linalg.norm(up)).as_matrix()
-    block = walk_of(made).imu[site]
-    gyr, acc, late = block.gyr_rad_s.copy(), block.acc_m_s2.copy(), block.time_s > slip_s
-    gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
+    turn = about_the_vertical(made.session.recordings[0].imu[site], np.deg2rad(20.0))
     imu = {one: walk_of(made).imu[one] for one in LEFT}
-    imu[site] = replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
+    imu[site] = turned(imu[site], turn, slip_s)
     walking = LiveWalk({one: sensors[one] for one in LEFT}, calibration)
     reported = [(k * 0.033, walking.update(blocks).slips) for k, blocks in enumerate(in_blocks(imu, 0.033))]
     first_s, (slip,) = next((now_s, slips) for now_s, slips in reported if slips)
