@@ -42,7 +42,7 @@ def turned(block: ImuBlock, turn: Rotation, from_s: float = -np.inf) -> ImuBlock
 
 
 def about_the_vertical(standing: ImuBlock, angle_rad: float) -> Rotation:
-    """A turn about what is up for a sensor that stands still."""
+    """A turn about what is up for a sensor at rest."""
     up = standing.acc_m_s2.mean(axis=0)
     return Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up))
 

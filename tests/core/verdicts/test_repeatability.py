@@ -57,7 +57,7 @@ def _published_again() -> Iterator[None]:
 
 
 def test_the_limits_hold_the_true_figures_of_drawn_clinics() -> None:
-    found = coverage(COLUMNS, clinics=60, people=20, n=20, seed=4)
+    found = coverage(COLUMNS, clinics=40, people=20, n=20, seed=4)
     assert {"stance", "knee_shape", f"between legs: {STANCE}"} <= set(found)
     assert {name: share for name, share in found.items() if share < 0.85} == {}
 
