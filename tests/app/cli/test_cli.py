@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.cli import arguments
 from app.cli import main as cli
@@ -69,6 +70,20 @@ def session(pristine: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(pristine, tmp_path / "session"))
 
 
+@pytest.fixture(scope="module")
+def analysed(pristine: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results of that session, with everything that there is."""
+    folder = tmp_path_factory.mktemp("results") / "out"
+    assert analyse(pristine, folder) == 0
+    return folder
+
+
+@pytest.fixture
+def out(analysed: Path, tmp_path: Path) -> Path:
+    """These results beside the session, which a test may write over."""
+    return Path(shutil.copytree(analysed, tmp_path / "out"))
+
+
 def files_in(folder: Path) -> dict[str, bytes]:
     """Give every file's bytes; of the report only its kind, as it alone holds the time of writing."""
     files = {str(f.relative_to(folder)): f.read_bytes() for f in sorted(folder.rglob("*")) if f.is_file()}
@@ -86,9 +101,23 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> str:
     return lines[0]
 
 
-def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Path, tmp_path: Path) -> None:
-    assert analyse(session, tmp_path / "out") == 0
-    assert list(files_in(tmp_path / "out")) == [
+Refuses = Callable[..., str]
+
+
+@pytest.fixture
+def refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Refuses:
+    """What is stated of arguments that are refused, in the folder with the session."""
+    monkeypatch.chdir(tmp_path)
+
+    def refused(*arguments: str) -> str:
+        assert main(arguments) == 2
+        return refusal(capsys).replace(f"{tmp_path}{os.sep}", "").replace("\\", "/")
+
+    return refused
+
+
+def test_a_session_becomes_results_in_the_folders_of_its_recordings(analysed: Path) -> None:
+    assert list(files_in(analysed)) == [
         "columns.csv",
         "csv-metadata.json",
         "fitting_means.csv",
@@ -100,18 +129,18 @@ def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Pat
         "summary.json",
         *(f"walk_1/{table}" for table in TABLES),
     ]
-    summary = json.loads((tmp_path / "out" / "summary.json").read_bytes())
+    summary = json.loads((analysed / "summary.json").read_bytes())
     assert summary["format"] == "gaitwright-analysis/1"
     assert list(summary["joints"]) == ["left_knee"]
-    header = (tmp_path / "out" / "walk_1" / "angles.csv").read_text().splitlines()[0]
+    header = (analysed / "walk_1" / "angles.csv").read_text().splitlines()[0]
     assert header.startswith("time_s,left_knee_deg,left_knee_sd_deg,left_knee_published_deg,left_knee_orientation_deg")
 
 
-def test_two_runs_write_the_same_bytes_and_hold_no_path(session: Path, tmp_path: Path) -> None:
-    assert analyse(session, tmp_path / "first") == analyse(session, tmp_path / "second") == 0
-    first = files_in(tmp_path / "first")
-    assert first == files_in(tmp_path / "second")
-    assert not any(str(tmp_path).encode() in content for content in first.values())
+def test_two_runs_write_the_same_bytes_and_hold_no_path(session: Path, analysed: Path, tmp_path: Path) -> None:
+    assert analyse(session, tmp_path / "second") == 0
+    second = files_in(tmp_path / "second")
+    assert files_in(analysed) == second
+    assert not any(str(tmp_path).encode() in content for content in second.values())
 
 
 def test_the_log_and_the_method_can_be_chosen(session: Path, tmp_path: Path) -> None:
@@ -124,7 +153,7 @@ def test_the_log_and_the_method_can_be_chosen(session: Path, tmp_path: Path) -> 
 def test_progress_goes_to_stderr_and_the_result_to_stdout(
     session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
+    assert analyse(session, tmp_path / "out", "--no-rrd", "--no-report") == 0
     stated = capsys.readouterr()
     percents = [int(line.split(" % ")[0]) for line in stated.err.splitlines()]
     assert percents[0] == 0
@@ -224,7 +253,7 @@ def test_on_a_terminal_progress_is_one_line_that_renews_itself(
 
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
+    assert analyse(session, tmp_path / "out", "--no-rrd", "--no-report") == 0
     stated = terminal.getvalue()
     assert "\n" not in stated
     assert "\r\x1b[K100 % writing" in stated
@@ -277,27 +306,13 @@ def test_a_demonstration_is_a_session_with_its_truth_and_the_analysis_of_it(
     assert files_in(out) == files
 
 
-def test_a_demonstration_replaces_no_real_session(
-    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    shutil.copytree(session, tmp_path / "out" / "session")
-    summary = json.loads((tmp_path / "out" / "summary.json").read_bytes())
-    (tmp_path / "out" / "summary.json").write_text(json.dumps(summary | {"simulated": True}))
-    capsys.readouterr()
-    assert main(["demo", "--out", str(tmp_path / "out")]) == 2
-    assert "is not a demonstration" in refusal(capsys)
-    assert files_in(tmp_path / "out" / "session") == files_in(session)
-
-
 # What is at OUT
 
 
-def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path: Path) -> None:
-    assert analyse(session, tmp_path / "out") == 0
-    (tmp_path / "out" / "walk_9").mkdir()
-    assert analyse(session, tmp_path / "out", "--no-rrd", "--no-report") == 0
-    assert list(files_in(tmp_path / "out")) == [
+def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, out: Path, tmp_path: Path) -> None:
+    (out / "walk_9").mkdir()
+    assert analyse(session, out, "--no-rrd", "--no-report") == 0
+    assert list(files_in(out)) == [
         "columns.csv",
         "csv-metadata.json",
         "fitting_means.csv",
@@ -306,32 +321,37 @@ def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path
         "summary.json",
         *(f"walk_1/{table}" for table in TABLES),
     ]
-    assert not (tmp_path / "out" / "walk_9").exists()
+    assert not (out / "walk_9").exists()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "session"]
 
 
 def test_an_empty_folder_is_filled(session: Path, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
+    assert analyse(session, tmp_path / "out", "--no-rrd", "--no-report") == 0
     assert (tmp_path / "out" / "summary.json").is_file()
 
 
-@pytest.mark.parametrize("content", ["", "{}", '{"format": "gaitwright-session/1"}'])
 def test_a_folder_that_is_no_analysis_is_left_alone(
-    session: Path, tmp_path: Path, content: str, capsys: pytest.CaptureFixture[str]
+    refuses: Refuses, session: Path, tmp_path: Path, snapshot: SnapshotAssertion
 ) -> None:
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "summary.json").write_text(content)
-    assert analyse(session, tmp_path / "out") == 2
-    assert "is not an analysis" in refusal(capsys)
-    assert files_in(tmp_path / "out") == {"summary.json": content.encode()}
-
-
-def test_a_file_at_out_is_left_alone(session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "out").write_text("mine")
-    assert analyse(session, tmp_path / "out") == 2
-    assert "is not an analysis" in refusal(capsys)
-    assert (tmp_path / "out").read_text() == "mine"
+    (tmp_path / "file").write_text("mine")
+    for name, content in (("empty", ""), ("other", "{}"), ("visit", '{"format": "gaitwright-session/1"}')):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "summary.json").write_text(content)
+    before = files_in(tmp_path)
+    assert {
+        case: refuses("analyse", "session", "--out", out)
+        for case, out in {
+            "a file": "file",
+            "a summary without content": "empty",
+            "a summary that states nothing": "other",
+            "a summary of a session": "visit",
+            "the session": "session",
+            "a recording of the session": "session/walk_1",
+            "a new folder in the session": "session/results",
+        }.items()
+    } == snapshot
+    assert files_in(tmp_path) == before
 
 
 def test_a_place_that_cannot_be_written_is_refused(
@@ -343,63 +363,48 @@ def test_a_place_that_cannot_be_written_is_refused(
 
 
 def test_a_full_disk_leaves_the_old_results(
-    session: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    session: Path, out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    before = files_in(tmp_path / "out")
-    capsys.readouterr()
+    before = files_in(out)
 
     def no_room(*_: object) -> None:
         raise OSError(28, "No space left on device", str(tmp_path / ".out-1234" / "summary.json"))
 
     monkeypatch.setattr(result_folder, "write_summary", no_room)
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 2
-    assert refusal(capsys).startswith(f"{tmp_path / 'out'}: this cannot be written (No space left on device).")
-    assert files_in(tmp_path / "out") == before
+    assert analyse(session, out, "--no-rrd") == 2
+    assert refusal(capsys).startswith(f"{out}: this cannot be written (No space left on device).")
+    assert files_in(out) == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "session"]
 
 
-@pytest.mark.parametrize("place", [".", "walk_1", "results"])
-def test_results_never_go_into_the_session(session: Path, place: str, capsys: pytest.CaptureFixture[str]) -> None:
-    before = files_in(session)
-    assert analyse(session, session / place) == 2
-    assert "lies inside the session" in refusal(capsys)
-    assert files_in(session) == before
-
-
-def test_the_session_of_a_demonstration_stays_among_its_results(session: Path, tmp_path: Path) -> None:
-    assert analyse(session, tmp_path / "out") == 0
-    inside = Path(shutil.move(session, tmp_path / "out" / "session"))
+def test_the_session_of_a_demonstration_stays_among_its_results(session: Path, out: Path, tmp_path: Path) -> None:
+    inside = Path(shutil.move(session, out / "session"))
     before = files_in(inside)
-    assert analyse(inside, tmp_path / "out", "--no-rrd") == 0
+    assert analyse(inside, out, "--no-rrd") == 0
     assert files_in(inside) == before
-    assert not (tmp_path / "out" / "session.rrd").exists()
+    assert not (out / "session.rrd").exists()
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 def test_recordings_anywhere_else_in_out_are_never_replaced(
-    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    refuses: Refuses, session: Path, out: Path, snapshot: SnapshotAssertion
 ) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    capsys.readouterr()
-    other = Path(shutil.copytree(session, tmp_path / "out" / "visits" / "other"))
-    for one in (session, other):
-        assert analyse(one, tmp_path / "out") == 2
-        assert "never replaced" in refusal(capsys)
+    def analysing(folder: str) -> str:
+        return refuses("analyse", folder, "--out", "out")
+
+    other = Path(shutil.copytree(session, out / "visits" / "other"))
+    found = {"anywhere in it": analysing("session"), "analysed themselves": analysing("out/visits/other")}
     assert files_in(other) == files_in(session)
-
-
-def test_the_session_of_someone_else_in_out_is_never_replaced(
-    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    shutil.copytree(session, tmp_path / "out" / "session")
-    capsys.readouterr()
-    assert analyse(session, tmp_path / "out") == 2
-    assert "never replaced" in refusal(capsys)
-    assert main(["demo", "--out", str(tmp_path / "out")]) == 2
-    assert "is not a demonstration" in refusal(capsys)
-    assert files_in(tmp_path / "out" / "session") == files_in(session)
+    shutil.move(other, out / "session")
+    found |= {
+        "the session of someone else": analysing("session"),
+        "for a demonstration": refuses("demo", "--out", "out"),
+    }
+    summary = json.loads((out / "summary.json").read_bytes())
+    (out / "summary.json").write_text(json.dumps(summary | {"simulated": True}))
+    found["a real session among simulated results"] = refuses("demo", "--out", "out")
+    assert found == snapshot
+    assert files_in(out / "session") == files_in(session)
 
 
 def test_a_recording_named_like_a_result_is_refused(
@@ -417,28 +422,25 @@ def test_a_recording_named_like_a_result_is_refused(
 
 
 def test_an_interruption_leaves_the_old_results(
-    session: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    session: Path, out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    before = files_in(tmp_path / "out")
-    capsys.readouterr()
+    before = files_in(out)
 
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(result_folder, "write_angles", interrupted)
-    assert analyse(session, tmp_path / "out") == 3
+    assert analyse(session, out) == 3
     assert refusal(capsys).startswith("Stopped.")
-    assert files_in(tmp_path / "out") == before
+    assert files_in(out) == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "session"]
 
 
 def test_an_interruption_between_the_renames_puts_everything_back(
-    session: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    session: Path, out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    inside = Path(shutil.move(session, tmp_path / "out" / "session"))
-    before = files_in(tmp_path / "out")
+    inside = Path(shutil.move(session, out / "session"))
+    before = files_in(out)
     rename = Path.rename
 
     def stumbles(self: Path, target: Path) -> Path:
@@ -447,8 +449,8 @@ def test_an_interruption_between_the_renames_puts_everything_back(
         return rename(self, target)
 
     monkeypatch.setattr(Path, "rename", stumbles)
-    assert analyse(inside, tmp_path / "out", "--no-rrd") == 3
-    assert files_in(tmp_path / "out") == before
+    assert analyse(inside, out, "--no-rrd") == 3
+    assert files_in(out) == before
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
@@ -520,7 +522,7 @@ def test_an_import_makes_a_session_and_a_second_one_adds_to_it(
     assert folders == {"session.toml", "walk_1", "circling"}
     assert len(second) == 5
     assert second["walk_1/left_thigh.csv"] == first["walk_1/left_thigh.csv"]
-    assert analyse(out, tmp_path / "out", "--no-rrd") == 0
+    assert analyse(out, tmp_path / "out", "--no-rrd", "--no-report") == 0
 
 
 def test_a_mapping_file_places_sensors_and_they_may_have_shared_a_receiver(
