@@ -22,9 +22,9 @@ class Later:
 
 
 def go_on(timed: OpenedLibrary, later: Later, days: float) -> None:
-    """Let time pass in which somebody looks in every five days."""
+    """Let time pass in which somebody looks in every six days."""
     while later.days < days:
-        later.days = min(later.days + 5, days)
+        later.days = min(later.days + 6, days)
         timed.library.audit.note(Action.VIEW, "library")
 
 

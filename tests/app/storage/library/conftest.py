@@ -12,17 +12,13 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
-from app.storage.slots import Cost
-from app.storage.stored import Operator, PlacedSensor, RecordingState, Role, StoredJournal, StoredRecording
+from app.storage.stored import PlacedSensor, RecordingState, StoredJournal, StoredRecording
 from core.body import Site
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.source import SourceInfo
-from tests.quick_library import copy_of
+from tests.quick_library import copy_of, quick_library
 
 PASSPHRASE = "four short words here"
 SENSOR = "LT-1"
@@ -34,11 +30,9 @@ Record = Callable[..., StoredRecording]
 @pytest.fixture(scope="session")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> OpenedLibrary:
     """A new library whose one operator is `hk`, closed: made once, because that takes longer than most tests."""
-    folder = tmp_path_factory.mktemp("untouched")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
-    library.close()
-    return OpenedLibrary(library, folder, data_key)
+    opened = quick_library(tmp_path_factory.mktemp("untouched"))
+    opened.library.close()
+    return opened
 
 
 @pytest.fixture

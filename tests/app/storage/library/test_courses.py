@@ -1,7 +1,9 @@
 """What is kept of a visit for its patient's course: it holds as long as all that it came of is as it was."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,6 +19,7 @@ from core.session import Patient, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
+from tests.quick_library import copy_of, quick_library
 from tests.simulated import session_of
 
 SHOES = course((walked(), "shoes"))
@@ -33,48 +36,52 @@ def reported() -> Session:
     return replace(found, recordings=recordings, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
 
 
+@pytest.fixture(scope="module")
+def with_visit(tmp_path_factory: pytest.TempPathFactory, reported: Session) -> OpenedLibrary:
+    """A library that holds this walk, closed."""
+    made = quick_library(tmp_path_factory.mktemp("courses"))
+    import_session(made, reported, nobody)
+    made.library.close()
+    return made
+
+
 @pytest.fixture
-def visit(opened: OpenedLibrary, reported: Session) -> StoredSession:
-    return opened.library.sessions.get(import_session(opened, reported, nobody).session_id)
+def opened(with_visit: OpenedLibrary, tmp_path: Path) -> Iterator[OpenedLibrary]:
+    """The same library, in a folder of the test's own."""
+    with copy_of(with_visit, tmp_path / "library") as opened:
+        yield opened
 
 
-def corrected(opened: OpenedLibrary, visit: StoredSession, change: Callable[[Session], Session]) -> None:
-    opened.library.sessions.change(visit, change(visit.details))
+@pytest.fixture
+def visit(opened: OpenedLibrary) -> StoredSession:
+    (line,) = opened.library.sessions.list()
+    return opened.library.sessions.get(line.id)
 
 
-def relabelled(opened: OpenedLibrary, visit: StoredSession) -> None:
-    walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.details, condition="barefoot"))
+Correct = Callable[[OpenedLibrary, StoredSession], object]
 
 
-def returned(opened: OpenedLibrary, visit: StoredSession) -> None:
-    walk = visit.recordings[1]
-    again = AlignmentChange("boots", (), returns_to="barefoot")
-    opened.library.recordings.change(walk, replace(walk.details, alignment=again))
+def of_walk(**reported: Any) -> Correct:
+    """Correct what was reported of the walk."""
+
+    def correct(opened: OpenedLibrary, visit: StoredSession) -> None:
+        walk = visit.recordings[1]
+        opened.library.recordings.change(walk, replace(walk.details, **reported))
+
+    return correct
 
 
-def tested(opened: OpenedLibrary, visit: StoredSession) -> None:
-    walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.details, test=PlannedTest(TimedProtocol.TEN_METRES)))
+def of_session(**reported: Any) -> Correct:
+    """Correct what was reported of the session."""
+    return lambda opened, visit: opened.library.sessions.change(visit, replace(visit.details, **reported))
 
 
 def measured(opened: OpenedLibrary, visit: StoredSession) -> None:
-    tested(opened, visit)
+    of_walk(test=PlannedTest(TimedProtocol.TEN_METRES))(opened, visit)
     visit = opened.library.sessions.get(visit.id)
-    before, walk = current_course_key(visit), visit.recordings[1]
-    longer = PlannedTest(TimedProtocol.TEN_METRES, course_m=10.0)
-    opened.library.recordings.change(walk, replace(walk.details, test=longer))
+    before = current_course_key(visit)
+    of_walk(test=PlannedTest(TimedProtocol.TEN_METRES, course_m=10.0))(opened, visit)
     assert current_course_key(opened.library.sessions.get(visit.id)) != before
-
-
-def left_out(opened: OpenedLibrary, visit: StoredSession) -> None:
-    walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.details, left_out_s={Side.LEFT: (4.0,)}))
-
-
-def not_kept(opened: OpenedLibrary, visit: StoredSession) -> None:
-    walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.details, is_kept=False))
 
 
 def swapped(opened: OpenedLibrary, visit: StoredSession) -> None:
@@ -85,14 +92,6 @@ def swapped(opened: OpenedLibrary, visit: StoredSession) -> None:
     worn = {**placement.sensors, Site.LEFT_THIGH: shank, Site.LEFT_SHANK: thigh}
     seen = {one.id: one.placement.id if one.placement is not None else None for one in walks}
     opened.library.edits.placement(visit.id, seen, [([one.id for one in walks], worn)])
-
-
-def turned(opened: OpenedLibrary, visit: StoredSession) -> None:
-    corrected(opened, visit, lambda reported: replace(reported, turned_sign={Joint.LEFT_KNEE: -1}))
-
-
-def zeroed(opened: OpenedLibrary, visit: StoredSession) -> None:
-    corrected(opened, visit, lambda reported: replace(reported, zero_rad={Joint.LEFT_KNEE: 0.1}))
 
 
 def without_ankle(opened: OpenedLibrary, visit: StoredSession) -> None:
@@ -114,25 +113,25 @@ def other_level(opened: OpenedLibrary, visit: StoredSession) -> None:
     assert current_course_key(opened.library.sessions.get(visit.id)) != before
 
 
-@pytest.mark.parametrize(
-    "correct",
-    [
-        relabelled,
-        returned,
-        tested,
-        measured,
-        left_out,
-        not_kept,
-        swapped,
-        turned,
-        zeroed,
-        without_ankle,
-        other_side,
-        other_level,
-    ],
-)
+CORRECTIONS = {
+    "relabelled": of_walk(condition="barefoot"),
+    "returned": of_walk(alignment=AlignmentChange("boots", (), returns_to="barefoot")),
+    "tested": of_walk(test=PlannedTest(TimedProtocol.TEN_METRES)),
+    "measured": measured,
+    "left out": of_walk(left_out_s={Side.LEFT: (4.0,)}),
+    "not kept": of_walk(is_kept=False),
+    "swapped": swapped,
+    "turned": of_session(turned_sign={Joint.LEFT_KNEE: -1}),
+    "zeroed": of_session(zero_rad={Joint.LEFT_KNEE: 0.1}),
+    "without ankle": without_ankle,
+    "other side": other_side,
+    "other level": other_level,
+}
+
+
+@pytest.mark.parametrize("correct", CORRECTIONS.values(), ids=CORRECTIONS)
 def test_what_was_found_no_longer_holds_once_something_is_put_right(
-    opened: OpenedLibrary, visit: StoredSession, correct: Callable[[OpenedLibrary, StoredSession], None]
+    opened: OpenedLibrary, visit: StoredSession, correct: Correct
 ) -> None:
     before = current_course_key(visit)
     assert current_course_key(opened.library.sessions.get(visit.id)) == before
@@ -143,8 +142,7 @@ def test_what_was_found_no_longer_holds_once_something_is_put_right(
 def test_what_is_stated_to_people_leaves_it_as_it_is(opened: OpenedLibrary, visit: StoredSession) -> None:
     before = current_course_key(visit)
     opened.library.sessions.change(visit, replace(visit.details, notes="walked well"), comment="for the prosthetist")
-    walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.details, note="slow"))
+    of_walk(note="slow")(opened, visit)
     assert current_course_key(opened.library.sessions.get(visit.id)) == before
 
 

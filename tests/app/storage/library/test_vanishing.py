@@ -26,13 +26,14 @@ from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter, State
 from app.storage.layout import DATABASE
 from app.storage.library import Library
-from app.storage.opened import OpenedLibrary, create_library, open_library
+from app.storage.opened import OpenedLibrary, open_library
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.root import ID_FILE, LibraryGoneError
-from app.storage.stored import LibraryError, Operator, RecordingState, Role, StoredJournal
+from app.storage.stored import LibraryError, RecordingState, StoredJournal
 from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE, Record
+from tests.quick_library import quick_library
 from tests.safety.homecoming_kills import bring_home_killed
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line
 from tests.waiting import wait_for
@@ -210,8 +211,7 @@ def test_another_library_at_the_same_path_is_not_mistaken_for_it(
     lines.send(10)
     lines.written()
     with gone(opened.folder):
-        other, _ = create_library(opened.folder, Operator("xx", "", Role.ADMINISTRATOR), PASSPHRASE)
-        other.library.close()
+        quick_library(opened.folder).library.close()
         before = sorted(opened.folder.rglob("*"))
         lines.moved()
         lines.send(10)

@@ -17,7 +17,7 @@ from app.storage.videos import destroying
 from app.storage.videos.destroying import destroy_clip, finish_destroying, withdraw_consent
 from app.storage.videos.reader import open_clip, read_clip
 from app.storage.videos.recovery import recover_clips
-from app.storage.videos.retention import VIDEO_DAYS, destroy_overdue_clips
+from app.storage.videos.retention import USUAL_DAYS, VIDEO_DAYS, destroy_overdue_clips, video_days
 from app.storage.videos.writer import ClipWriter
 from app.workers.library_opening import tidy
 from tests.app.storage.later import Later, go_on, later, timed
@@ -185,9 +185,20 @@ def test_a_video_is_destroyed_after_its_days_and_the_walk_stays(
     assert destroy_overdue_clips(timed, later) == 0
 
 
-@pytest.mark.parametrize(("setting", "after_days"), [(30, 31), (0, None), ("soon", 366), (-5, 366), (True, 366)])
+def test_what_is_no_number_of_days_is_the_usual_one(opened: OpenedLibrary) -> None:
+    for setting in ("soon", -5, True):
+        opened.library.settings.put(VIDEO_DAYS, setting)
+        assert video_days(opened) == USUAL_DAYS == 365
+
+
+@pytest.mark.parametrize(("setting", "after_days"), [(30, 31), (0, None)])
 def test_the_library_states_for_how_long(
-    timed: OpenedLibrary, recording_id: UUID, make_video: MakeVideo, later: Later, setting: object, after_days: float
+    timed: OpenedLibrary,
+    recording_id: UUID,
+    make_video: MakeVideo,
+    later: Later,
+    setting: int,
+    after_days: float | None,
 ) -> None:
     make_video(recording_id)
     timed.library.settings.put(VIDEO_DAYS, setting)

@@ -24,13 +24,13 @@ from tests.quick_library import quick_library
 from tests.simulated import analysis_of, session_of
 from tests.videos import MODE, NO_ROOM_ASKED, OPENED_NS, frame, picture, plain_pieces
 
-FRAMES = 40
+FRAMES = 20
 
 
 @pytest.fixture
 def with_videos(tmp_path: Path) -> Iterator[tuple[OpenedLibrary, UUID]]:
     """A library with one simulated visit, whose walk has a video from two cameras."""
-    session = session_of(WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12))))
+    session = session_of(WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=6))))
     with quick_library(tmp_path / "library") as opened:
         imported = import_session(opened, session, nobody, "DEMO-1", room=NO_ROOM_ASKED)
         opened.library.clips.give_consent(imported.patient.id)
