@@ -8,6 +8,7 @@ import pytest
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QLabel
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.cohort.study.groups import GroupAnswer, Grouping, GroupQuestion, GroupRow, answer
 from app.cohort.study.measures import measure_words
@@ -46,38 +47,29 @@ def shown(page: QuestionsPage) -> str:
     return " ".join(label.text() for label in page.findChildren(QLabel) if label.isVisible())
 
 
-@pytest.mark.parametrize(
-    ("stated", "so", "not_so"),
-    [
-        ("1 group has fewer than 3 sessions: no interval", found(WHOLE, FEW), found(WHOLE)),
-        ("Some sessions are in several groups", found(WHOLE, FEW, sessions=12), found(WHOLE, FEW)),
-        ("The sessions are from 5 people", found(WHOLE, patients=5), found(WHOLE)),
-        (
-            "All sessions are from 1 person. The intervals are therefore too narrow",
-            found(WHOLE, patients=1),
-            found(WHOLE, patients=0),
-        ),
-        ("SIMULATED: 3 sessions are simulated", found(WHOLE, simulated=3), found(WHOLE)),
-        ("1 simulated session is excluded", found(WHOLE, simulated_left_out=1), found(WHOLE)),
-        ("4 not reported", found(replace(WHOLE, withheld=4)), found(replace(WHOLE, with_care=4))),
-        ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, withheld=5))),
-        ("6 not measured", found(replace(WHOLE, not_measured=6)), found(WHOLE)),
-    ],
-)
-def test_a_note_comes_where_it_is_so_and_not_where_it_is_not(stated: str, so: GroupAnswer, not_so: GroupAnswer) -> None:
-    assert stated in " ".join(notes(so))
-    assert stated not in " ".join(notes(not_so))
-
-
-def test_where_all_counts_there_is_nothing_to_note() -> None:
+def test_a_note_comes_where_it_is_so_and_not_where_it_is_not(snapshot: SnapshotAssertion) -> None:
     assert notes(found(WHOLE)) == []
+    assert {
+        "a group of few sessions": notes(found(WHOLE, FEW)),
+        "sessions in several groups": notes(found(WHOLE, FEW, sessions=12)),
+        "several sessions of one person": notes(found(WHOLE, patients=5)),
+        "all of one person": notes(found(WHOLE, patients=1)),
+        "of how many people is not known": notes(found(WHOLE, patients=0)),
+        "simulated": notes(found(WHOLE, simulated=3)),
+        "simulated and left out": notes(found(WHOLE, simulated_left_out=1)),
+        "not reported": notes(found(replace(WHOLE, withheld=4))),
+        "caution": notes(found(replace(WHOLE, with_care=5))),
+        "not measured": notes(found(replace(WHOLE, not_measured=6))),
+    } == snapshot
 
 
-def test_the_sentence_states_what_is_shown_and_how_many_stand_behind_it() -> None:
-    assert sentence(found(WHOLE, FEW)) == "Knee range of motion: means of 14 sessions, by condition."
-    assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range of motion: mean of 12 sessions."
+def test_the_sentence_states_what_is_shown_and_how_many_stand_behind_it(snapshot: SnapshotAssertion) -> None:
     none = replace(WHOLE, sessions=0, mean=math.nan, half_interval=math.nan)
-    assert sentence(found(none)) == "No session has an included value of this measure."
+    assert {
+        "two groups": sentence(found(WHOLE, FEW)),
+        "all as one": sentence(found(WHOLE, grouping=Grouping.ALL)),
+        "no session": sentence(found(none)),
+    } == snapshot
 
 
 def test_nothing_is_judged_however_far_groups_lie_apart(page: QuestionsPage) -> None:
@@ -164,18 +156,15 @@ def test_without_a_table_it_is_stated_how_one_comes_to_be(qtbot: QtBot, page: Qu
         page.first_table.click()
 
 
-@pytest.mark.parametrize(
-    ("grouping", "names"),
-    [
-        (Grouping.AGE, {"0": "under 18 years", "18": "18 to 39 years", "80": "80 years and over", "": "not recorded"}),
-        (Grouping.SPEED, {"0": "under 0.4 m/s", "0.8": "0.8 to 1.2 m/s", "1.6": "1.6 m/s and over"}),
-        (Grouping.LEG, {"prosthetic": "prosthetic leg", "other": "sound leg", "neither": "no leg affected"}),
-        (Grouping.SIDE, {"left": "left leg", "both": "both legs"}),
-        (Grouping.CONDITION, {"left": "left", "": "not recorded"}),
-    ],
-)
-def test_a_group_is_called_what_it_is(grouping: Grouping, names: dict[str, str]) -> None:
-    assert {group: group_name(grouping, group) for group in names} == names
+def test_a_group_is_called_what_it_is(snapshot: SnapshotAssertion) -> None:
+    groups = {
+        Grouping.AGE: ("0", "18", "80", ""),
+        Grouping.SPEED: ("0", "0.8", "1.6"),
+        Grouping.LEG: ("prosthetic", "other", "neither"),
+        Grouping.SIDE: ("left", "both"),
+        Grouping.CONDITION: ("left", ""),
+    }
+    assert {one.name: {group: group_name(one, group) for group in groups[one]} for one in groups} == snapshot
 
 
 def test_a_parameter_that_nobody_named_keeps_its_own_name_and_unit() -> None:
