@@ -10,15 +10,12 @@ from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
 from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
 from app.system import kept_json
 from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
-from tests.app.home.home_library import PASSPHRASE, open_library
+from tests.app.home.home_library import open_library
+from tests.quick_library import CHEAP, quick_library
 
 
 @pytest.fixture(autouse=True)
@@ -27,6 +24,12 @@ def tables_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     place = tmp_path / "config" / "tables.json"
     monkeypatch.setattr(kept_json, "place_of", place.with_name)
     return place
+
+
+@pytest.fixture(autouse=True)
+def quick_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keys that the program derives cost next to nothing, as those of `quick_library`."""
+    monkeypatch.setattr(KeySlots.__init__, "__defaults__", (CHEAP,))
 
 
 @pytest.fixture
@@ -40,8 +43,8 @@ def controller(qtbot: QtBot) -> Iterator[LibraryController]:
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library of `hk` with two patients, the second of whom was here three times."""
     folder = tmp_path_factory.mktemp("home")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+    with quick_library(folder) as opened:
+        library = opened.library
         library.patients.create(Patient(code="P-0147", birth_year=1968, device="microprocessor knee"))
         patient = library.patients.create(Patient(code="P-0163", birth_year=1951, sex="female", affected_side="right"))
         for month in (3, 4, 5):

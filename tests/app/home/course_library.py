@@ -5,17 +5,15 @@ from pathlib import Path
 from uuid import UUID
 
 from app.storage.audit import REPORT_FORMAT, about
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Action, Operator, RecordingState, Role, StoredJournal
+from app.storage.stored import Action, RecordingState, StoredJournal
 from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.wizard.resuming import current_course_key
 from core.body import Joint
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.course_material import course, unsure, walked
+from tests.quick_library import quick_library
 
 PASSPHRASE = "four short words here"
 SHOES, STICK = "Shoes", "Shoes, stick"
@@ -62,8 +60,8 @@ def add_visit(library: Library, patient_id: UUID, number: int, found: Course | N
 
 def make_course_library(folder: Path, *, visits: int = 5, missing: frozenset[int] = frozenset()) -> Path:
     """A closed library of `hk`: a patient with `visits`, of which those `missing` are not computed, and another."""
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+    with quick_library(folder) as opened:
+        library = opened.library
         for code, born, side in (("P-0147", 1968, "right"), ("P-0122", 1990, "right"), ("P-0107", 1962, "left")):
             library.patients.create(Patient(code=code, birth_year=born, affected_side=side))
         reported = Patient(

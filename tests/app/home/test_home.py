@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.home.home import Home
 from app.importing.untrusted_files import read_foreign_session, the_reader
@@ -56,6 +56,13 @@ def codes(home: Home) -> list[str]:
 
 def sessions(home: Home) -> list[SessionLine]:
     return [line for line in home.page.sessions.lines if isinstance(line, SessionLine)]
+
+
+def delete_session(qtbot: QtBot, home: Home) -> None:
+    """The latest of the patient in sight, by its key."""
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
+    home.page.sessions.setFocus()
+    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
 
 
 def restores(home: Home) -> dict[str, Button]:
@@ -133,9 +140,7 @@ def test_what_is_taken_back_while_the_settings_are_in_sight_is_not_listed_there_
 
 
 def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
-    home.page.sessions.setFocus()
-    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
+    delete_session(qtbot, home)
     qtbot.waitUntil(lambda: len(sessions(home)) == 2)
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
@@ -151,18 +156,14 @@ def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home
 
 
 def test_a_deleted_session_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
-    home.page.sessions.setFocus()
-    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
+    delete_session(qtbot, home)
     qtbot.waitUntil(lambda: len(sessions(home)) == 2)
     home.toast.undo()
     qtbot.waitUntil(lambda: len(sessions(home)) == 3)
 
 
 def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(qtbot: QtBot, home: Home) -> None:
-    qtbot.waitUntil(lambda: len(sessions(home)) == 3)
-    home.page.sessions.setFocus()
-    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
+    delete_session(qtbot, home)
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"])
     assert home.toast.text == "P-0163 was deleted. The deletion becomes permanent in 30 days."
@@ -180,12 +181,16 @@ def test_an_empty_library_begins_with_a_new_patient(qtbot: QtBot, home: Home) ->
     assert requested.args == [None]
 
 
+def write_visit(folder: Path) -> None:
+    """A session folder of a walk of 3 s."""
+    block = ImuBlock("LT-1", np.arange(300) / 100, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
+    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
+    write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), folder)
+
+
 @pytest.mark.endurance
 def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
-    time_s = np.arange(300) / 100
-    block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
-    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
-    write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
+    write_visit(tmp_path / "visit")
     home.page.empty.importing.clicked.emit()
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page)
@@ -206,9 +211,7 @@ def test_a_stopped_import_states_what_came_of_it_once_that_is_known(
     monkeypatch: pytest.MonkeyPatch,
     is_done: bool,
 ) -> None:
-    block = ImuBlock("LT-1", np.arange(300) / 100, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
-    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
-    write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
+    write_visit(tmp_path / "visit")
     go_on = threading.Event()
 
     def held(opened: OpenedLibrary, session: Session, report: Callable[[float, str], None], code: str) -> object:
@@ -235,10 +238,7 @@ def test_a_stopped_import_states_what_came_of_it_once_that_is_known(
 @pytest.mark.endurance
 @pytest.mark.skipif(os.name == "nt", reason="signals of this kind are not for Windows")
 def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
-    time_s = np.arange(300) / 100
-    block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
-    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
-    write_session(Session((recording,), Patient(code="P-0200")), tmp_path / "visit")
+    write_visit(tmp_path / "visit")
     read_foreign_session(tmp_path / "visit", lambda: None)
     process = the_reader().process
     assert process is not None
@@ -266,6 +266,23 @@ def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Hom
     qtbot.waitUntil(home.banner.isVisible)
     assert "session.toml" in home.banner.text
     assert home.current is home.page
+
+
+Start = Callable[[], Home]
+
+
+@pytest.fixture
+def start(qtbot: QtBot, controller: LibraryController, settings: Settings, folder: Path) -> Start:
+    """Home as at the program's start, once the library is open."""
+
+    def started() -> Home:
+        home = Home(controller, settings)
+        qtbot.addWidget(home)
+        home.show()
+        open_library(qtbot, controller, home, folder)
+        return home
+
+    return started
 
 
 def leave_open(folder: Path, has_row: bool = True, states_session: bool = False) -> UUID:
@@ -296,14 +313,9 @@ def leave_open(folder: Path, has_row: bool = True, states_session: bool = False)
         return line.id
 
 
-def test_what_was_being_recorded_is_recovered_and_marked(
-    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
-) -> None:
+def test_what_was_being_recorded_is_recovered_and_marked(qtbot: QtBot, start: Start, folder: Path) -> None:
     session_id = leave_open(folder)
-    home = Home(controller, settings)
-    qtbot.addWidget(home)
-    home.show()
-    open_library(qtbot, controller, home, folder)
+    home = start()
     qtbot.waitUntil(home.banner.isVisible)
     assert "of walk 3 was recovered" in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)))
@@ -313,13 +325,12 @@ def test_what_was_being_recorded_is_recovered_and_marked(
 
 
 def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
-    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
+    qtbot: QtBot, start: Start, controller: LibraryController, folder: Path
 ) -> None:
     """The library knows it, so a new program does: nothing of this is remembered in a window."""
     session_id = leave_open(folder)
     recover_all(folder)
-    home = new_home(qtbot, controller, settings)
-    open_library(qtbot, controller, home, folder)
+    home = start()
     qtbot.waitUntil(home.banner.isVisible)
     asked = "walk 3 of P-0163 was recovered earlier and still awaits a decision."
     assert home.banner.text == f"{asked} Review the recording, then include or exclude it."
@@ -336,34 +347,23 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     qtbot.waitUntil(lambda: not any_needs_look(home))
     with qtbot.waitSignal(controller.closed):
         controller.close()
-    later = new_home(qtbot, controller, settings)
-    open_library(qtbot, controller, later, folder)
+    later = start()
     qtbot.waitUntil(lambda: len(sessions(later)) == 3)
     assert later.banner.isHidden()
     assert not any_needs_look(later)
 
 
-def test_several_recovered_walks_are_asked_for_together(
-    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
-) -> None:
+def test_several_recovered_walks_are_asked_for_together(qtbot: QtBot, start: Start, folder: Path) -> None:
     leave_open(folder)
     leave_open(folder, has_row=False, states_session=True)
     recover_all(folder)
-    home = new_home(qtbot, controller, settings)
-    open_library(qtbot, controller, home, folder)
+    home = start()
     qtbot.waitUntil(home.banner.isVisible)
     assert home.banner.text.startswith("2 walks were recovered earlier and still await a decision.")
 
 
 def any_needs_look(home: Home) -> bool:
     return any(line.needs_look for line in sessions(home)) or any(line.needs_look for line in lines(home))
-
-
-def new_home(qtbot: QtBot, controller: LibraryController, settings: Settings) -> Home:
-    home = Home(controller, settings)
-    qtbot.addWidget(home)
-    home.show()
-    return home
 
 
 def recover_all(folder: Path) -> None:
@@ -377,16 +377,13 @@ def recover_all(folder: Path) -> None:
 
 
 def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
-    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path, tmp_path: Path
+    qtbot: QtBot, start: Start, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     """One states of which session it is; of two others nobody knows, so their samples can be had as files."""
     leave_open(folder, has_row=False, states_session=True)
     leave_open(folder, has_row=False)
     leave_open(folder, has_row=False)
-    home = Home(controller, settings)
-    qtbot.addWidget(home)
-    home.show()
-    open_library(qtbot, controller, home, folder)
+    home = start()
     qtbot.waitUntil(home.banner.isVisible)
     assert (
         "of walk 3 was recorded while the library did not respond. The recording is now in its session."
@@ -477,54 +474,40 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
     assert page.backup_folder.text() == "No backup folder chosen yet."
 
 
-@pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
 def test_an_older_state_of_the_library_is_stated_and_an_administrator_may_accept_it(
-    qtbot: QtBot, home: Home, controller: LibraryController, first: int, role: Role
+    qtbot: QtBot, home: Home, controller: LibraryController, snapshot: SnapshotAssertion
 ) -> None:
-    state = controller.state
+    state, notice = controller.state, home.notices.rollback
     assert state is not None
     home.show_library(state)
-    assert not home.notices.rollback.isVisible()
-    home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(first, 9)))
-    stated = home.notices.rollback.text
-    assert stated.startswith(
-        "This library is older than the one last opened on this computer. Audit entries 5 to 9 are not"
-    )
-    button = home.notices.rollback.findChildren(Button)[0]
-    assert button.isVisible() is (role is Role.ADMINISTRATOR)
-    assert ("Inform an administrator, who can check this and accept it if a backup was restored" in stated) is (
-        role is Role.CLINICIAN
-    )
-    if role is Role.ADMINISTRATOR:
-        button.click()
-        qtbot.waitUntil(lambda: not home.notices.rollback.isVisible())
+    assert not notice.isVisible()
+    stated = {}
+    for role in (Role.CLINICIAN, Role.ADMINISTRATOR):
+        home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(5, 9)))
+        button = notice.findChildren(Button)[0]
+        assert button.isVisible() is (role is Role.ADMINISTRATOR)
+        stated[role.name] = notice.text
+    assert stated == snapshot
+    button.click()
+    qtbot.waitUntil(lambda: not notice.isVisible())
 
 
 def test_what_became_of_work_without_the_server_is_stated_and_of_other_libraries_nothing(
-    home: Home, controller: LibraryController
+    home: Home, controller: LibraryController, snapshot: SnapshotAssertion
 ) -> None:
     state, away = controller.state, home.notices.away
     assert state is not None
-    home.show_library(state)
-    assert not away.isVisible()
-    for changed, begins, ends in (
-        (
-            {"is_away": True},
-            "You are working offline, without the clinic's server.",
-            "They move to the server at the first login after it responds again. Clinic patients are not shown. "
-            "The sessions are matched to them later by patient code.",
-        ),
-        ({"brought_from_away": 1}, "1 offline session is now on", "the clinic's server."),
-        (
-            {"still_away": Refusal("It is full.", "Ask.")},
-            "Offline sessions are still on this computer only",
-            "It is full. Ask.",
-        ),
-    ):
-        home.show_library(replace(state, **changed))
-        assert away.isVisible()
-        assert away.text.startswith(begins)
-        assert away.text.endswith(ends)
+
+    def stated(**changed: object) -> str:
+        home.show_library(replace(state, **changed))  # type: ignore[arg-type]  # of several types
+        return away.text if away.isVisible() else ""
+
+    assert stated() == ""
+    assert {
+        "offline": stated(is_away=True),
+        "brought": stated(brought_from_away=1),
+        "still here": stated(still_away=Refusal("It is full.", "Ask.")),
+    } == snapshot
     home.clear()
     assert not away.isVisible()
 
@@ -623,11 +606,10 @@ def closed_amid(folder: Path, name: str) -> UUID:
 
 
 def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
-    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
+    qtbot: QtBot, start: Start, folder: Path
 ) -> None:
     session_id = closed_amid(folder, "walk 3")
-    home = new_home(qtbot, controller, settings)
-    open_library(qtbot, controller, home, folder)
+    home = start()
     qtbot.waitUntil(home.banner.isVisible)
     asked = "The program was closed before A Shoes of P-0163 was included or excluded."
     assert (

@@ -23,7 +23,6 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, held_alone, open_library
-from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.system.progress import Report
 from app.workers.library_controller import LibraryController
@@ -33,20 +32,24 @@ from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
 from core.session import Patient
 from tests.app.library_answers import Asker, asked, not_opened_by, opened, opened_by, opening
+from tests.quick_library import CHEAP, PASSPHRASE, quick_library
 from tests.waiting import PATIENCE_S
 
-PASSPHRASE = "four short words here"
+
+@pytest.fixture(autouse=True)
+def quick_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keys that the program derives cost next to nothing, as those of `quick_library`."""
+    monkeypatch.setattr(KeySlots.__init__, "__defaults__", (CHEAP,))
 
 
 @pytest.fixture(scope="session")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library whose operators are `hk` and the viewer `vi`."""
     folder = tmp_path_factory.mktemp("controller")
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
-    data_key, _ = slots.create("hk", PASSPHRASE)
-    slots.add(data_key, "vi", PASSPHRASE)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
-        library.operators.add(Operator("vi", "V. Iten", Role.VIEWER))
+    with quick_library(folder) as opened:
+        assert opened.data_key is not None
+        KeySlots(folder / KEYS, CHEAP).add(opened.data_key, "vi", PASSPHRASE)
+        opened.library.operators.add(Operator("vi", "V. Iten", Role.VIEWER))
     return folder
 
 
@@ -65,7 +68,7 @@ def controller(qtbot: QtBot) -> Iterator[LibraryController]:
 def test_the_passphrase_is_not_held_by_a_library_that_is_open(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    slots, own = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)), "words that only this test types"
+    slots, own = KeySlots(folder / KEYS), "words that only this test types"
     slots.set_passphrase(slots.open("hk", PASSPHRASE), "hk", own)
 
     def let_go_of(passphrase: str) -> None:
@@ -650,7 +653,7 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
     state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
     before = state.library.data_key
     assert before is not None
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots = KeySlots(folder / KEYS)
     slots.add(before, "ab", "another four short words")
     controller.run(
         lambda library: library.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN)), None, None, asker

@@ -18,20 +18,18 @@ from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
-from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.root import LibraryGoneError
-from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import Unlocked
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import Asker
 from tests.app.library_answers import opened as opened_at
+from tests.quick_library import CHEAP, PASSPHRASE, quick_library
 
-PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
@@ -43,8 +41,7 @@ def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("watched")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)).close()
+    quick_library(folder).library.close()
     return folder
 
 
@@ -185,7 +182,7 @@ def test_keys_are_changed_of_the_library_that_is_open_only(
     with qtbot.waitSignal(controller.gone):
         folder.rename(folder.with_name("renamed"))
     folder.mkdir()
-    KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    KeySlots(folder / KEYS, CHEAP).create("hk", PASSPHRASE)
     with pytest.raises(LibraryGoneError):
         _slots(opened)
 
