@@ -8,6 +8,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
+from uuid import UUID
 
 import pytest
 from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
@@ -18,7 +20,10 @@ from pytestqt.qtbot import QtBot
 
 from app import main_window
 from app.home import session_screen
-from app.home.login.controller import SHORTEST
+from app.home.home import Home
+from app.home.login.controller import SHORTEST, Entry
+from app.home.login.first_start_page import FirstStartPage
+from app.home.login.log_in_page import LogInPage
 from app.home.settings.settings_page import SettingsPage
 from app.live_output.output import live_output
 from app.main_window import MainWindow
@@ -32,32 +37,40 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import DATABASE_VARIABLE, KEYS, STATION, default_folder
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
-from app.storage.slots import Cost
+from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError, Operator, Role
 from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, set_scale
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.wizard import Wizard
 from app.wording.translation import use_language
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.room import is_cut
+from tests.quick_library import CHEAP, PASSPHRASE, quick_library
 
-PASSPHRASE = "four short words here"
 SECRET_CODE = "P-0147"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
+
+
+@pytest.fixture(autouse=True)
+def quick_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keys that the program derives cost next to nothing, as those of `quick_library`."""
+    monkeypatch.setattr(KeySlots.__init__, "__defaults__", (CHEAP,))
+
+
+@pytest.fixture(autouse=True)
+def nothing_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is made before it is needed: the wizard and the settings would be, in every test."""
+    monkeypatch.setattr(main_window, "MAKE_EVERY_MS", 3_600_000)
 
 
 @pytest.fixture(scope="module")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library of `hk`, with a patient."""
     folder = tmp_path_factory.mktemp("window")
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
-    data_key, recovery_key = slots.create("hk", PASSPHRASE)
-    slots.confirm_recovery_key(recovery_key)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
-        library.patients.create(Patient(code=SECRET_CODE, birth_year=1968))
+    with quick_library(folder) as opened:
+        opened.library.patients.create(Patient(code=SECRET_CODE, birth_year=1968))
     return folder
 
 
@@ -106,6 +119,42 @@ def logged_in(qtbot: QtBot, window: MainWindow) -> None:
     qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None)
 
 
+class Desk(NamedTuple):
+    """A window with an open library: home is in sight."""
+
+    window: MainWindow
+    home: Home
+    entry: Entry
+
+
+@pytest.fixture
+def desk(qtbot: QtBot, open_window: Open, folder: Path) -> Desk:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    assert window.entry is not None
+    return Desk(window, window.home, window.entry)
+
+
+def at_log_in(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, LogInPage]:
+    """A window that asks for the passphrase."""
+    window = open_window(folder)
+    assert window.entry is not None
+    page = window.entry.log_in
+    qtbot.waitUntil(lambda: page.operator.count() == 1)
+    return window, page
+
+
+def first_start(window: MainWindow) -> FirstStartPage:
+    assert window.entry is not None
+    return window.entry.first_start
+
+
+def enter(page: LogInPage, passphrase: str = PASSPHRASE) -> None:
+    page.passphrase.set_text(passphrase)
+    QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+
+
 def words_in_sight(window: MainWindow) -> str:
     shown = [one for one in window.findChildren(QWidget) if one.isVisible()]
     words = [one.text() for one in shown if isinstance(one, QLabel | QAbstractButton | QLineEdit)]
@@ -117,10 +166,7 @@ def test_home_and_wizard_are_made_while_somebody_types_the_passphrase(
     qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(main_window, "MAKE_EVERY_MS", 1)
-    window = open_window(folder)
-    assert window.entry is not None
-    page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.operator.count() == 1)
+    window, page = at_log_in(qtbot, open_window, folder)
     QTest.keyClicks(page.passphrase.line_edit, PASSPHRASE[:5])
     typing, shown = QApplication.focusWidget(), window.screens.currentWidget()
     assert typing is page.passphrase.line_edit
@@ -138,12 +184,10 @@ def test_without_a_library_the_two_ways_on_are_offered(window: MainWindow) -> No
 
 
 def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
-    qtbot: QtBot, open_window: Open, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, open_window: Open, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(keys.KeySlots.__init__, "__defaults__", (Cost(passes=1, memory_kib=64),))
     window = open_window(tmp_path / "new")
-    assert window.entry is not None
-    page = window.entry.first_start
+    page = first_start(window)
     assert page.isVisible()
     for field, text in ((page.code, "hk"), (page.name, "H. Keller"), (page.passphrase, PASSPHRASE)):
         QTest.keyClicks(field.line_edit, text)
@@ -174,15 +218,12 @@ def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
 def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots = KeySlots(folder / KEYS)
     key = slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
     for put_off in (True, False):
-        window = open_window(folder)
-        assert window.entry is not None
-        page, log_in = window.entry.first_start, window.entry.log_in
-        qtbot.waitUntil(lambda log_in=log_in: log_in.operator.count() == 1)  # type: ignore[misc]  # pytest-qt's types
-        log_in.passphrase.set_text(PASSPHRASE)
-        QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+        window, log_in = at_log_in(qtbot, open_window, folder)
+        page = first_start(window)
+        enter(log_in)
         qtbot.waitUntil(page.later.isVisible)
         assert "It is the only way to open the library if the passphrase is forgotten" in words_in_sight(window)
         assert key not in words_in_sight(window)
@@ -201,11 +242,11 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
     assert slots.is_recovery_key_confirmed
 
 
+@pytest.mark.usefixtures("no_visits")
 def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_question_of_that_library(
-    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:
-    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())  # nobody waits for visits
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots = KeySlots(folder / KEYS)
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))  # which nobody has typed back
     window = open_window(folder)
     assert window.entry is not None
@@ -213,13 +254,18 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
     shown: list[QWidget] = []
     qtbot.waitUntil(lambda: log_in.operator.count() == 1)
     window.entry.shown.connect(shown.append)
-    log_in.passphrase.set_text(PASSPHRASE)
-    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    enter(log_in)
     window.open_demonstration()
     qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home)
     assert window.controller.state is not None
     assert window.controller.state.is_demonstration
     assert shown == [window.entry.waiting]
+
+
+@pytest.fixture
+def no_visits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A demonstration that nobody waits for."""
+    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())
 
 
 def in_demonstration(qtbot: QtBot, window: MainWindow) -> None:
@@ -230,62 +276,49 @@ def in_demonstration(qtbot: QtBot, window: MainWindow) -> None:
     assert window.controller.state.is_demonstration
 
 
-def test_who_leaves_the_demonstration_is_in_the_own_library_without_a_passphrase(
-    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())  # nobody waits for visits
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    assert window.entry is not None
+@pytest.mark.usefixtures("no_visits")
+def test_who_leaves_the_demonstration_is_in_the_own_library_without_a_passphrase(qtbot: QtBot, desk: Desk) -> None:
+    window, home, entry = desk
     in_demonstration(qtbot, window)
     shown: list[QWidget] = []
-    window.entry.shown.connect(shown.append)
-    window.home.own_library_requested.emit()
-    assert window.home.state is None  # nothing of the demonstration is left in sight
-    qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None)
-    assert window.screens.currentWidget() is window.home
+    entry.shown.connect(shown.append)
+    home.own_library_requested.emit()
+    assert home.state is None  # nothing of the demonstration is left in sight
+    qtbot.waitUntil(lambda: home.page.patients.line is not None)
+    assert window.screens.currentWidget() is home
     assert SECRET_CODE in words_in_sight(window)
-    assert shown == [window.entry.waiting]  # and no log-in
+    assert shown == [entry.waiting]  # and no log-in
 
 
-def test_five_minutes_without_anybody_log_out_behind_the_demonstration(
-    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())
-    window = open_window(folder)
-    logged_in(qtbot, window)
+@pytest.mark.usefixtures("no_visits")
+def test_five_minutes_without_anybody_log_out_behind_the_demonstration(qtbot: QtBot, desk: Desk) -> None:
+    window, home, entry = desk
     in_demonstration(qtbot, window)
-    assert window.home is not None
-    assert window.entry is not None
     window.lock()  # as `idle` asks for it
     qtbot.waitUntil(lambda: window.controller.kept is None)
-    assert window.screens.currentWidget() is window.home  # simulated patients are shown on
-    window.home.own_library_requested.emit()
-    assert window.screens.currentWidget() is window.entry.log_in
+    assert window.screens.currentWidget() is home  # simulated patients are shown on
+    home.own_library_requested.emit()
+    assert window.screens.currentWidget() is entry.log_in
 
 
 def test_a_demonstration_that_does_not_open_leaves_the_library_open_and_is_reported(
-    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(_folder: Path) -> None:
         raise LibraryError("There is no room", "Make some")
 
     monkeypatch.setattr("app.workers.library_holder.demonstration", refuse)
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
+    window = desk.window
     with qtbot.waitSignal(window.controller.opened):
         window.open_demonstration()
-    assert window.screens.currentWidget() is window.home
+    assert window.screens.currentWidget() is desk.home
     assert "There is no room." in words_in_sight(window)
 
 
 def test_another_language_opens_the_window_again_where_it_was_and_without_a_passphrase(
-    qtbot: QtBot, open_window: Open, folder: Path
+    qtbot: QtBot, desk: Desk, open_window: Open, folder: Path
 ) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
+    window = desk.window
     window.close()
     kept = window.finish(must_keep=True)
     assert kept is not None
@@ -338,14 +371,11 @@ def _key_of(window: MainWindow) -> DataKey | None:
 
 def renewed(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, KeySlots]:
     """A window that shows a recovery key made again, since the one before was never typed back."""
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots = KeySlots(folder / KEYS)
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
-    window = open_window(folder)
-    assert window.entry is not None
-    page, log_in = window.entry.first_start, window.entry.log_in
-    qtbot.waitUntil(lambda: log_in.operator.count() == 1)
-    log_in.passphrase.set_text(PASSPHRASE)
-    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    window, log_in = at_log_in(qtbot, open_window, folder)
+    page = first_start(window)
+    enter(log_in)
     qtbot.waitUntil(page.renew.isVisible)
     page.renew.click()
     qtbot.waitUntil(lambda: bool(page.recovery_key))
@@ -354,8 +384,7 @@ def renewed(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, 
 
 def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     window, slots = renewed(qtbot, open_window, folder)
-    assert window.entry is not None
-    page = window.entry.first_start
+    page = first_start(window)
     assert page.print.isVisible()
     page.typed.set_text("-".join(page.recovery_key.split("-")[-2:]))
     page.go.click()
@@ -374,8 +403,7 @@ def test_a_new_recovery_key_is_covered_by_the_lock_and_not_shown_again(
     assert window.is_covered
     assert log_in.isVisible()
     assert key[:4] not in words_in_sight(window)
-    log_in.passphrase.set_text(PASSPHRASE)
-    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    enter(log_in)
     qtbot.waitUntil(lambda: not window.is_covered)
     assert page.recovery_key == ""
     assert key[:4] not in words_in_sight(window)
@@ -389,7 +417,7 @@ def test_a_new_recovery_key_is_covered_by_the_lock_and_not_shown_again(
 def test_who_was_given_a_passphrase_chooses_an_own_one_before_anything_is_shown(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:
-    slots, own = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)), "seven other quiet words"
+    slots, own = KeySlots(folder / KEYS), "seven other quiet words"
     data_key = slots.open("hk", PASSPHRASE)
     slots.add(data_key, "ab", "the first one she got", is_given=True)
     with Library.open(folder, data_key) as library:
@@ -426,87 +454,58 @@ def test_who_was_given_a_passphrase_chooses_an_own_one_before_anything_is_shown(
         slots.open("ab", "the first one she got")
 
 
-def test_the_passphrase_opens_home_and_nothing_of_it_is_kept(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.entry is not None
-    assert window.entry.log_in.passphrase.text == ""
-    assert window.home is not None
-    assert QApplication.focusWidget() is window.home.page.search
+def test_the_passphrase_opens_home_and_nothing_of_it_is_kept(desk: Desk) -> None:
+    _, home, entry = desk
+    assert entry.log_in.passphrase.text == ""
+    assert QApplication.focusWidget() is home.page.search
 
 
-def test_escape_leads_back_to_the_patients_and_ends_a_search(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    QTest.keyClicks(window.home.page.search, "nobody")
-    QTest.keyClick(window.home.page.search, Qt.Key.Key_Escape)
-    assert window.home.page.search.text() == ""
-    window.home.show_settings()
+def test_escape_leads_back_to_the_patients_from_a_search_the_settings_and_the_help(desk: Desk) -> None:
+    window, home, _ = desk
+    QTest.keyClicks(home.page.search, "nobody")
+    QTest.keyClick(home.page.search, Qt.Key.Key_Escape)
+    assert home.page.search.text() == ""
+    home.show_settings()
     QTest.keyClick(window, Qt.Key.Key_Escape)
-    assert window.home.current is window.home.page
-
-
-def test_help_opens_over_home_and_leads_back(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    QTest.keyClick(window.home.page.search, Qt.Key.Key_F1)
-    assert window.screens.currentWidget() is not window.home
+    assert home.current is home.page
+    QTest.keyClick(home.page.search, Qt.Key.Key_F1)
+    assert window.screens.currentWidget() is not home
     QTest.keyClick(window, Qt.Key.Key_Escape)
-    assert window.screens.currentWidget() is window.home
+    assert window.screens.currentWidget() is home
 
 
-def in_a_visit(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, Wizard]:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
+def test_a_session_is_begun_in_the_wizard_and_left_for_the_settings_and_for_home(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    window, home, _ = desk
+    QTest.keyClick(home.page.search, Qt.Key.Key_Return)
     wizard = window.wizard
     assert wizard is not None
-    return window, wizard
-
-
-def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window, wizard = in_a_visit(qtbot, open_window, folder)
     assert window.screens.currentWidget() is wizard
-    assert wizard.visit is not None
-    assert wizard.visit.patient.details.code == SECRET_CODE
-    wizard.leave()
-    assert window.screens.currentWidget() is window.home
-
-
-def test_escape_in_the_wizard_reaches_the_step_that_is_in_sight(
-    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    window, wizard = in_a_visit(qtbot, open_window, folder)
-    received: list[Intent] = []
-    monkeypatch.setattr(wizard, "act_on", received.append)
-    QTest.keyClick(window, Qt.Key.Key_Escape)
-    assert received == [Intent(KeyAction.LEAVE)]
-
-
-def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window, wizard = in_a_visit(qtbot, open_window, folder)
     visit = wizard.visit
+    assert visit is not None
+    assert visit.patient.details.code == SECRET_CODE
     wizard.settings_required.emit()
-    assert window.screens.currentWidget() is window.home
+    assert window.screens.currentWidget() is home
     QTest.keyClick(window, Qt.Key.Key_Escape)
     assert window.screens.currentWidget() is wizard
-    assert wizard.visit is visit is not None
+    assert wizard.visit is visit
+    received: list[Intent] = []
+    with monkeypatch.context() as patched:
+        patched.setattr(wizard, "act_on", received.append)
+        QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert received == [Intent(KeyAction.LEAVE)]  # which the step in sight is asked
+    wizard.leave()
+    assert window.screens.currentWidget() is home
 
 
 @pytest.mark.endurance
 def test_after_three_wrong_passphrases_the_next_try_waits_and_states_so(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:
-    window = open_window(folder)
-    assert window.entry is not None
-    page = window.entry.log_in
-    qtbot.waitUntil(lambda: page.operator.count() == 1)
+    _, page = at_log_in(qtbot, open_window, folder)
     for _ in range(3):
-        page.passphrase.set_text("not this one")
-        QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+        enter(page, "not this one")
         qtbot.waitUntil(lambda: page.passphrase.is_wrong)
         page.passphrase.set_wrong("")
     assert page.go.text() == "Next try in 2 s"
@@ -531,11 +530,9 @@ def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, ope
     assert page.go.isEnabled()
 
 
-def test_who_leaves_the_desk_locks_the_library_at_once(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    (row,) = [one for one in window.home.rail.below if one.accessibleName() == "Lock"]
+def test_who_leaves_the_desk_locks_the_library_at_once(desk: Desk) -> None:
+    window, home, _ = desk
+    (row,) = [one for one in home.rail.below if one.accessibleName() == "Lock"]
     row.click()
     assert window.is_covered
     assert window.idle.is_locked
@@ -543,9 +540,8 @@ def test_who_leaves_the_desk_locks_the_library_at_once(qtbot: QtBot, open_window
     assert SECRET_CODE not in words_in_sight(window)
 
 
-def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
+def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, desk: Desk) -> None:
+    window, _, entry = desk
     assert SECRET_CODE in words_in_sight(window)
     window.lock()
     assert window.is_covered
@@ -554,24 +550,18 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     for key in (Qt.Key.Key_O, Qt.Key.Key_D):
         QTest.keyClick(window, key, Qt.KeyboardModifier.ControlModifier)
     assert window.is_covered
-    assert window.entry is not None
-    page = window.entry.log_in
+    page = entry.log_in
     assert page.isVisible()
-    page.passphrase.set_text("not this one")
-    QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+    enter(page, "not this one")
     qtbot.waitUntil(lambda: page.passphrase.is_wrong)
     assert window.is_covered
-    page.passphrase.set_text(PASSPHRASE)
-    QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+    enter(page)
     qtbot.waitUntil(lambda: not window.is_covered)
     assert SECRET_CODE in words_in_sight(window)
 
 
-def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    home = window.home
-    assert home is not None
+def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, desk: Desk) -> None:
+    window, home, _ = desk
     home.page.panel.delete_patient.trigger()
     qtbot.waitUntil(lambda: home.deleting.dialog is not None)
     window.lock()
@@ -579,14 +569,12 @@ def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, open
     assert SECRET_CODE not in words_in_sight(window)
 
 
-def test_the_cover_states_that_a_recording_goes_on(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.entry is not None
-    window.entry.cover("hk", is_recording=True)
+def test_the_cover_states_that_a_recording_goes_on(desk: Desk) -> None:
+    window, _, entry = desk
+    entry.cover("hk", is_recording=True)
     assert "Recording continues" in words_in_sight(window)
-    assert not window.entry.log_in.leave.isVisible()
-    window.entry.show_recording(False)
+    assert not entry.log_in.leave.isVisible()
+    entry.show_recording(False)
     assert "Recording continues" not in words_in_sight(window)
 
 
@@ -600,16 +588,13 @@ def test_activity_puts_the_cover_off(open_window: Open, folder: Path, monkeypatc
     assert noted
 
 
-def test_another_operator_leaves_nothing_behind(qtbot: QtBot, open_window: Open, folder: Path) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
+def test_another_operator_leaves_nothing_behind(qtbot: QtBot, desk: Desk) -> None:
+    window, home, entry = desk
     window.lock()
-    assert window.entry is not None
     with qtbot.waitSignal(window.controller.closed):
-        QTest.mouseClick(window.entry.log_in.leave, Qt.MouseButton.LeftButton)
+        QTest.mouseClick(entry.log_in.leave, Qt.MouseButton.LeftButton)
     assert not window.is_covered
-    assert window.home is not None
-    assert len(window.home.page.patients.lines) == 0
+    assert len(home.page.patients.lines) == 0
     logged_in(qtbot, window)
 
 
@@ -704,13 +689,9 @@ def test_the_language_is_kept_and_only_another_one_is_reported(qtbot: QtBot, set
     assert settings.language == "en", "there is no catalogue of it"
 
 
-def test_a_language_chosen_in_the_settings_is_set(
-    qtbot: QtBot, open_window: Open, folder: Path, settings: Settings
-) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    assert window.home is not None
-    window.home.show_settings()
+def test_a_language_chosen_in_the_settings_is_set(desk: Desk, settings: Settings) -> None:
+    window, home, _ = desk
+    home.show_settings()
     (page,) = window.findChildren(SettingsPage)
     assert page.language.choice == "en"
     page.language.segments[1].click()
@@ -810,27 +791,21 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_again(
 
 
 def test_where_no_library_was_the_first_start_offers_one(open_window: Open, folder: Path, tmp_path: Path) -> None:
-    window = open_window(tmp_path / "none")
-    assert window.entry is not None
-    assert window.entry.first_start.make.isVisible()
-    assert not window.entry.first_start.look_again.isVisible()
+    page = first_start(open_window(tmp_path / "none"))
+    assert page.make.isVisible()
+    assert not page.look_again.isVisible()
 
 
 @pytest.mark.endurance
 def test_a_library_that_goes_is_stated_at_home_and_so_is_its_return(
-    qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
+    qtbot: QtBot, desk: Desk, settings: Settings, folder: Path
 ) -> None:
-    window = open_window(folder)
-    logged_in(qtbot, window)
+    window, home, entry = desk
     assert settings.latest_library == str(folder)
-    home = window.home
-    assert home is not None
     elsewhere = folder.with_name("renamed")
     folder.rename(elsewhere)
     qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is no longer in {folder}."))
     window.lock()
-    entry = window.entry
-    assert entry is not None
     # home may have been refused its list before the library was missed
     qtbot.waitUntil(lambda: entry.log_in.banner.text == home.banner.text)
     elsewhere.rename(folder)
@@ -838,25 +813,32 @@ def test_a_library_that_goes_is_stated_at_home_and_so_is_its_return(
     assert entry.log_in.banner.text == home.banner.text
 
 
-@pytest.mark.endurance
-def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session(
-    qtbot: QtBot, open_window: Open, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def data_elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What is kept on this computer is kept in the test's folder."""
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    home, state = window.home, window.controller.state
-    assert home is not None
+
+
+def with_session(window: MainWindow) -> tuple[OpenedLibrary, Library, UUID]:
+    """The library of a window, with a session of its patient."""
+    state = window.controller.state
     assert state is not None
     library = state.library.library
-    session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
+    return state.library, library, library.sessions.create(library.patients.search()[0].id, Session(())).id
+
+
+@pytest.mark.usefixtures("data_elsewhere")
+@pytest.mark.endurance
+def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session(
+    qtbot: QtBot, desk: Desk, folder: Path
+) -> None:
+    window, home, _ = desk
+    opened, library, session_id = with_session(window)
     elsewhere = folder.with_name("renamed")
     with qtbot.waitSignal(window.controller.gone):
         folder.rename(elsewhere)
     reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
-    writer = JournalWriter.create(
-        state.library.recordings, uuid7(), state.library.data_key, room=ANY_ROOM, shelter=state.library.shelter
-    )
+    writer = JournalWriter.create(opened.recordings, uuid7(), opened.data_key, room=ANY_ROOM, shelter=opened.shelter)
     writer.mark(Belonging(session_id, reported).text())
     writer.stop()
     with qtbot.waitSignal(home.recovering.recovered):
@@ -867,39 +849,32 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     assert [one.details.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
 
 
+@pytest.mark.usefixtures("data_elsewhere")
 @pytest.mark.endurance
 def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
-    qtbot: QtBot, open_window: Open, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, desk: Desk, folder: Path
 ) -> None:
     """Its file comes home without the key; what it holds nobody can read until the key is there."""
-    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
-    window = open_window(folder)
-    logged_in(qtbot, window)
-    home, state, entry = window.home, window.controller.state, window.entry
-    assert home is not None
-    assert state is not None
-    assert entry is not None
-    library = state.library.library
-    session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
-    elsewhere, data_key, page = folder.with_name("renamed"), bytes(state.library.data_key or b""), entry.log_in
+    window, home, entry = desk
+    opened, library, session_id = with_session(window)
+    elsewhere, data_key, page = folder.with_name("renamed"), bytes(opened.data_key or b""), entry.log_in
     window.lock()
-    qtbot.waitUntil(lambda: not state.library.data_key)
+    qtbot.waitUntil(lambda: not opened.data_key)
     for name in ("walk 1", "walk 2"):  # a disk that comes and goes
         with qtbot.waitSignal(window.controller.gone):
             folder.rename(elsewhere)
         reported = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
         with JournalWriter.create(
-            state.library.recordings, uuid7(), data_key, room=ANY_ROOM, shelter=state.library.shelter
+            opened.recordings, uuid7(), data_key, room=ANY_ROOM, shelter=opened.shelter
         ) as writer:
             writer.mark(Belonging(session_id, reported).text())
         with qtbot.waitSignal(window.controller.back):
             elsewhere.rename(folder)
         assert page.banner.text == "The library is available again. 1 recording made meanwhile was added."
-    assert len(list(state.library.recordings.glob("*.journal"))) == 2
-    assert not state.library.data_key
+    assert len(list(opened.recordings.glob("*.journal"))) == 2
+    assert not opened.data_key
     with qtbot.waitSignal(home.recovering.recovered):
-        page.passphrase.set_text(PASSPHRASE)
-        QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+        enter(page)
     assert not window.is_covered
     assert home.banner.text == "The library is available again. 1 recording made meanwhile was added."
     assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
