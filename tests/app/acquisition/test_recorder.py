@@ -1,9 +1,9 @@
 """What is recorded live gets into the library, whatever the database does, and is analysed as it was recorded."""
 
-import shutil
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from functools import partial
 from pathlib import Path
 from uuid import UUID
 
@@ -16,7 +16,6 @@ from app.storage.exchange import session_with_samples
 from app.storage.journal.disk import JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError
 from app.storage.layout import DATABASE
-from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import find_interrupted
 from app.storage.stored import LibraryBusyError, LibraryError, PlacedSensor, RecordingState
@@ -27,7 +26,7 @@ from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.replay import ReplayFaults, ReplaySource
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
-from tests.quick_library import quick_library
+from tests.quick_library import copy_of, quick_library
 from tests.safety.live_material import Clock, numbered_session
 from tests.simulated import simulation_of
 from tests.waiting import wait_for
@@ -41,23 +40,14 @@ LEFT_THIGH, LEFT_SHANK, LEFT_FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_
 @pytest.fixture(scope="module")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> OpenedLibrary:
     """A new library whose one operator is `hk`, closed."""
-    folder = tmp_path_factory.mktemp("untouched")
-    opened = quick_library(folder)
+    opened = quick_library(tmp_path_factory.mktemp("untouched"))
     opened.library.close()
     return opened
 
 
-def reopened(opened: OpenedLibrary) -> OpenedLibrary:
-    library = Library.open(opened.folder, opened.data_key)
-    library.log_in("hk")
-    return OpenedLibrary(library, opened.folder, opened.data_key)
-
-
 @pytest.fixture
 def opened(untouched: OpenedLibrary, tmp_path: Path) -> Iterator[OpenedLibrary]:
-    folder = tmp_path / "library"
-    shutil.copytree(untouched.folder, folder)
-    with reopened(OpenedLibrary(untouched.library, folder, untouched.data_key)) as opened:
+    with copy_of(untouched, tmp_path / "library") as opened:
         yield opened
 
 
@@ -86,6 +76,15 @@ def acquisition() -> Iterator[Acquisition]:
 @pytest.fixture
 def session_id(opened: OpenedLibrary) -> UUID:
     return visit_of(opened, numbered_session("a", 2))
+
+
+Begin = Callable[..., Recorder]
+
+
+@pytest.fixture
+def begin(opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition) -> Begin:
+    """Begin a recording in this session."""
+    return partial(Recorder.begin, opened, acquisition, session_id, room=ANY_ROOM)
 
 
 def differences(one: object, other: object, where: str = "") -> list[str]:
@@ -145,7 +144,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
     visit = opened.library.sessions.get(visit_id)
     first = analyse(Session(tuple(live), visit.details.patient, visit.details.sensors, is_simulated=True))
     opened.library.close()
-    with reopened(opened) as later:
+    with copy_of(opened, opened.folder.with_name("later")) as later:
         stored_visit = later.library.sessions.get(visit_id)
         again = session_with_samples(later, stored_visit, {}, lambda _share, _what: None)
     assert again.is_simulated
@@ -183,9 +182,9 @@ def is_part_of(block: ImuBlock, played: ImuBlock) -> bool:
 
 
 def test_sources_that_are_closed_first_end_the_recording_too(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
+    opened: OpenedLibrary, acquisition: Acquisition, begin: Begin
 ) -> None:
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    recorder = begin(walk())
     time.sleep(0.2)
     acquisition.close()
     stored, recording = recorder.stop(opened)
@@ -193,16 +192,14 @@ def test_sources_that_are_closed_first_end_the_recording_too(
     assert len(recording.imu) == 2
 
 
-def test_a_name_that_is_taken_is_refused_and_nothing_is_recorded(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
-) -> None:
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+def test_a_name_that_is_taken_is_refused_and_nothing_is_recorded(opened: OpenedLibrary, begin: Begin) -> None:
+    recorder = begin(walk())
     recorder.stop(opened)
     files = list(opened.recordings.iterdir())
     with pytest.raises(LibraryError, match="already has a recording of this name"):
-        Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+        begin(walk())
     assert list(opened.recordings.iterdir()) == files
-    Recorder.begin(opened, acquisition, session_id, walk("walk 2"), room=ANY_ROOM).stop(opened)
+    begin(walk("walk 2")).stop(opened)
 
 
 def test_simulated_sensors_are_not_recorded_for_a_real_patient(opened: OpenedLibrary, acquisition: Acquisition) -> None:
@@ -212,12 +209,12 @@ def test_simulated_sensors_are_not_recorded_for_a_real_patient(opened: OpenedLib
 
 
 def test_without_room_nothing_begins_and_the_name_stays_free(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
+    opened: OpenedLibrary, session_id: UUID, begin: Begin
 ) -> None:
     with pytest.raises(JournalRefusedError, match="not enough disk space"):
-        Recorder.begin(opened, acquisition, session_id, walk(), room=Room(start_bytes=10**15))
+        begin(walk(), room=Room(start_bytes=10**15))
     wait_for(lambda: opened.library.sessions.get(session_id).recordings == ())
-    stored, _ = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM).stop(opened)
+    stored, _ = begin(walk()).stop(opened)
     assert stored.details.name == "walk 1"
 
 
@@ -250,10 +247,10 @@ def busy(opened: OpenedLibrary, session_id: UUID, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_busy_database_holds_up_no_recording_and_the_row_follows(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, busy: Busy
+    opened: OpenedLibrary, session_id: UUID, begin: Begin, busy: Busy
 ) -> None:
     begin_s = time.monotonic()
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    recorder = begin(walk())
     assert time.monotonic() - begin_s < 5.0
     assert opened.library.sessions.get(session_id).recordings == ()
     time.sleep(0.2)
@@ -266,11 +263,9 @@ def test_a_busy_database_holds_up_no_recording_and_the_row_follows(
     assert len(recording.imu) == 2
 
 
-def test_a_row_that_could_not_be_entered_is_entered_on_stop(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, busy: Busy
-) -> None:
+def test_a_row_that_could_not_be_entered_is_entered_on_stop(opened: OpenedLibrary, begin: Begin, busy: Busy) -> None:
     busy.refuses = True
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    recorder = begin(walk())
     time.sleep(0.2)
     busy.is_held = False
     stored, recording = recorder.stop(opened)
@@ -281,10 +276,10 @@ def test_a_row_that_could_not_be_entered_is_entered_on_stop(
 
 
 def test_a_database_that_stays_busy_leaves_a_journal_that_is_found(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, busy: Busy
+    opened: OpenedLibrary, begin: Begin, busy: Busy
 ) -> None:
     busy.refuses = True
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    recorder = begin(walk())
     time.sleep(0.1)
     with pytest.raises(LibraryBusyError):
         recorder.stop(opened)
@@ -297,10 +292,10 @@ def test_a_database_that_stays_busy_leaves_a_journal_that_is_found(
 
 
 def test_a_disk_that_fails_is_reported_and_what_was_written_is_kept(
-    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, monkeypatch: pytest.MonkeyPatch
+    opened: OpenedLibrary, begin: Begin, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stated: list[Trouble] = []
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), stated.append, room=ANY_ROOM)
+    recorder = begin(walk(), stated.append)
     time.sleep(0.3)
 
     def fail(file: JournalFile, data: bytes) -> None:

@@ -123,30 +123,26 @@ def test_a_player_that_has_ended_leaves_no_process_behind(qtbot: QtBot, tmp_path
     qtbot.waitUntil(lambda: is_gone(int(number.read_text())))
 
 
-def test_two_sounds_never_overlap_and_of_those_that_wait_the_latest_is_received(qtbot: QtBot, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("waiting", "received"),
+    [
+        pytest.param((Sound.LOSS, Sound.READY, Sound.STOP), "stop.wav", id="the latest"),
+        pytest.param((Sound.TICK, Sound.REACHED, Sound.TICK), "reached.wav", id="a tick takes no other sound's place"),
+    ],
+)
+def test_two_sounds_never_overlap_and_of_those_that_wait_one_is_received(
+    qtbot: QtBot, tmp_path: Path, waiting: tuple[Sound, ...], received: str
+) -> None:
     flag = tmp_path / "sounding"
     alone = f"os.mkdir({str(flag)!r}); time.sleep(0.1); os.rmdir({str(flag)!r})"  # mkdir refuses where one sounds
     loudspeaker = Loudspeaker([player(tmp_path, alone), player(tmp_path, "print()")])
     loudspeaker.play(Sound.COUNT)
     qtbot.waitUntil(flag.exists)
-    for sound in (Sound.LOSS, Sound.READY, Sound.STOP):
+    for sound in waiting:
         loudspeaker.play(sound)
     qtbot.waitUntil(lambda: len(played(tmp_path)) == 2)
     qtbot.waitUntil(lambda: not flag.exists())
-    assert played(tmp_path) == ["count.wav", "stop.wav"]
-
-
-def test_a_tick_takes_no_other_sounds_place_and_gives_its_own(qtbot: QtBot, tmp_path: Path) -> None:
-    flag = tmp_path / "sounding"
-    alone = f"os.mkdir({str(flag)!r}); time.sleep(0.1); os.rmdir({str(flag)!r})"
-    loudspeaker = Loudspeaker([player(tmp_path, alone)])
-    loudspeaker.play(Sound.COUNT)
-    qtbot.waitUntil(flag.exists)
-    for sound in (Sound.TICK, Sound.REACHED, Sound.TICK):
-        loudspeaker.play(sound)
-    qtbot.waitUntil(lambda: len(played(tmp_path)) == 2)
-    qtbot.waitUntil(lambda: not flag.exists())
-    assert played(tmp_path) == ["count.wav", "reached.wav"]
+    assert played(tmp_path) == ["count.wav", received]
 
 
 def test_a_player_that_cannot_play_is_left_for_the_next(qtbot: QtBot, tmp_path: Path) -> None:

@@ -68,6 +68,23 @@ def visit_of(opened: OpenedLibrary) -> UUID:
     return opened.library.sessions.create(patient.id, Session(())).id
 
 
+def take_away(qtbot: QtBot, controller: LibraryController, folder: Path) -> Path:
+    """Rename the library's folder, and wait until it is missed; where it is now."""
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(controller.gone):
+        folder.rename(elsewhere)
+    return elsewhere
+
+
+def fill_disk(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let nothing be copied home."""
+
+    def full(_source: Path, _target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("app.storage.bringing_home._copy", full)
+
+
 def record_away(opened: OpenedLibrary, session_id: UUID, name: str = "walk 1") -> UUID:
     """A recording that was made while the library was gone."""
     recording_id, reported = uuid7(), Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
@@ -109,9 +126,7 @@ def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
 ) -> None:
     opened = opened_of(controller)
     session_id = visit_of(opened)
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     recording_id = record_away(opened, session_id)
     with qtbot.waitSignal(controller.back) as stated:
         elsewhere.rename(folder)
@@ -126,9 +141,7 @@ def test_what_was_recorded_meanwhile_is_home_at_the_next_start(
     """Of this library: of another one nothing is taken."""
     opened = opened_of(controller)
     session_id = visit_of(opened)
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     recording_id = record_away(opened, session_id)
     with qtbot.waitSignal(controller.closed):
         controller.close()
@@ -153,15 +166,9 @@ def test_what_cannot_be_brought_home_is_stated_once_and_kept(
 ) -> None:
     opened = opened_of(controller)
     session_id = visit_of(opened)
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     recording_id = record_away(opened, session_id)
-
-    def full(_source: Path, _target: Path) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("app.storage.bringing_home._copy", full)
+    fill_disk(monkeypatch)
     with qtbot.waitSignal(controller.refused) as stated:
         elsewhere.rename(folder)
     assert stated.args is not None
@@ -179,8 +186,7 @@ def test_keys_are_changed_of_the_library_that_is_open_only(
     """Another library in its place keeps its own."""
     opened = opened_of(controller)
     assert "hk" in _slots(opened).codes
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(folder.with_name("renamed"))
+    take_away(qtbot, controller, folder)
     folder.mkdir()
     KeySlots(folder / KEYS, CHEAP).create("hk", PASSPHRASE)
     with pytest.raises(LibraryGoneError):
@@ -202,9 +208,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     assert gone.count() == 0
     with pytest.raises(LibraryError, match="This library is already open in Gaitwright"), held_alone(folder):
         pass
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     recording_id = record_away(opened_of(controller), visit_id := uuid7())
     with qtbot.waitSignal(controller.back) as stated:
         elsewhere.rename(folder)
@@ -220,8 +224,7 @@ def test_the_key_is_not_changed_while_the_library_is_gone(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, opened = Asker(), opened_of(controller)
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(folder.with_name("renamed"))
+    take_away(qtbot, controller, folder)
     controller.reopen(lambda holder, report: holder.change_key("", report), *asker.all_ears)
     assert asker.refusals == [controller.gone_words]
     assert controller.is_gone
@@ -235,15 +238,9 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     asker, opened = Asker(), opened_of(controller)
     opened.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
     assert opened.shelter is not None
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     record_away(opened, uuid7())
-
-    def full(_source: Path, _target: Path) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("app.storage.bringing_home._copy", full)
+    fill_disk(monkeypatch)
     with qtbot.waitSignals([controller.refused, controller.back]):
         elsewhere.rename(folder)
     controller.reopen(
@@ -277,9 +274,7 @@ def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, opened = Asker(), opened_of(controller)
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     recording_id = record_away(opened, uuid7())
     controller.lock()
     qtbot.waitUntil(lambda: not opened.data_key)
@@ -300,9 +295,7 @@ def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
 ) -> None:
     asker, delay = Asker(), LoginDelay(folder, time.monotonic)
     controller.lock()
-    elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(controller.gone):
-        folder.rename(elsewhere)
+    elsewhere = take_away(qtbot, controller, folder)
     for _ in range(4):
         controller.call(lambda holder: holder.unlock("hk", PASSPHRASE, delay), *asker.ears)
     qtbot.waitUntil(lambda: len(asker.refusals) == 4)
