@@ -560,17 +560,15 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, desk: Desk
     assert SECRET_CODE in words_in_sight(window)
 
 
-def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, desk: Desk) -> None:
-    window, home, _ = desk
+def test_the_lock_leaves_no_question_about_a_patient_in_sight_and_states_that_a_recording_goes_on(
+    qtbot: QtBot, desk: Desk
+) -> None:
+    window, home, entry = desk
     home.page.panel.delete_patient.trigger()
     qtbot.waitUntil(lambda: home.deleting.dialog is not None)
     window.lock()
     assert home.deleting.dialog is None
     assert SECRET_CODE not in words_in_sight(window)
-
-
-def test_the_cover_states_that_a_recording_goes_on(desk: Desk) -> None:
-    window, _, entry = desk
     entry.cover("hk", is_recording=True)
     assert "Recording continues" in words_in_sight(window)
     assert not entry.log_in.leave.isVisible()

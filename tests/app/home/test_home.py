@@ -412,13 +412,6 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     assert set(left) <= set(controller.state.library.recordings.iterdir())
 
 
-def test_a_library_that_lost_its_end_states_so(qtbot: QtBot, controller: LibraryController, home: Home) -> None:
-    state = controller.state
-    assert state is not None
-    home.show_library(replace(state, is_end_lost=True))
-    assert "Check the latest session." in home.banner.text
-
-
 def test_nothing_is_left_for_whoever_comes_next(home: Home) -> None:
     home.clear()
     assert codes(home) == []
@@ -453,23 +446,17 @@ def test_a_new_recovery_key_ends_the_old_one(qtbot: QtBot, home: Home, folder: P
     assert page.print.isVisible()
 
 
-def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
-    page = home.settings.page
+def test_a_backup_is_made_and_checked_and_its_folder_is_named_for_no_other_library(
+    qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path
+) -> None:
+    page, state = home.settings.page, controller.state
+    assert state is not None
     (tmp_path / "disk").mkdir()
     home.settings.set_backup_folder(str(tmp_path / "disk"))
     qtbot.waitUntil(lambda: "disk" in page.backup_folder.text())
     page.backup_requested.emit()
     qtbot.waitUntil(lambda: "checked" in page.backup_stated.text())
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
-
-
-def test_the_settings_of_one_library_name_no_folder_of_another(
-    qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path
-) -> None:
-    page, state = home.settings.page, controller.state
-    assert state is not None
-    home.settings.set_backup_folder(str(tmp_path / "disk"))
-    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text())
     home.settings.show_library(replace(state, library=replace(state.library, data_key=None)))
     assert page.backup_folder.text() == "No backup folder chosen yet."
 
@@ -492,24 +479,25 @@ def test_an_older_state_of_the_library_is_stated_and_an_administrator_may_accept
     qtbot.waitUntil(lambda: not notice.isVisible())
 
 
-def test_what_became_of_work_without_the_server_is_stated_and_of_other_libraries_nothing(
+def test_what_is_the_matter_with_a_library_is_stated_and_of_others_nothing(
     home: Home, controller: LibraryController, snapshot: SnapshotAssertion
 ) -> None:
-    state, away = controller.state, home.notices.away
+    state = controller.state
     assert state is not None
 
-    def stated(**changed: object) -> str:
+    def stated(**changed: object) -> list[str]:
         home.show_library(replace(state, **changed))  # type: ignore[arg-type]  # of several types
-        return away.text if away.isVisible() else ""
+        return [one.text for one in (home.banner, home.notices.away) if one.isVisible()]
 
-    assert stated() == ""
+    assert stated() == []
     assert {
+        "its end is lost": stated(is_end_lost=True),
         "offline": stated(is_away=True),
         "brought": stated(brought_from_away=1),
         "still here": stated(still_away=Refusal("It is full.", "Ask.")),
     } == snapshot
     home.clear()
-    assert not away.isVisible()
+    assert not home.notices.away.isVisible()
 
 
 @pytest.mark.endurance

@@ -61,7 +61,14 @@ def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
         yield library
 
 
-def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot, home: Home) -> None:
+def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list_which_has_the_last_change(
+    qtbot: QtBot, home: Home
+) -> None:
+    def stated() -> list[str]:
+        return [line.last for line in home.page.patients.lines if isinstance(line, PatientLine)]
+
+    qtbot.waitUntil(lambda: stated()[0] == "knee +11° since 20 Jun")
+    assert stated()[1:] == ["0 sessions"] * 3
     card = home.page.panel.course
     assert [visit.course is not None for visit in card.visits] == [True, False, True, True, True]
     assert "Walking speed: 0.71 metres per second on 20 Jun" in card.accessibleDescription()
@@ -100,14 +107,6 @@ def test_w_opens_the_report_step_of_the_visit_but_in_the_search_it_is_typed(qtbo
     with qtbot.waitSignal(home.report_requested) as reported:
         QTest.keyClick(home.page.patients, Qt.Key.Key_W)
     assert reported.args == [latest]
-
-
-def test_the_list_has_the_last_change_of_patients_in_sight(qtbot: QtBot, home: Home) -> None:
-    def stated() -> list[str]:
-        return [line.last for line in home.page.patients.lines if isinstance(line, PatientLine)]
-
-    qtbot.waitUntil(lambda: stated()[0] == "knee +11° since 20 Jun")
-    assert stated()[1:] == ["0 sessions"] * 3
 
 
 def test_nothing_of_a_course_is_left_for_whoever_comes_next(home: Home) -> None:

@@ -194,19 +194,14 @@ def test_how_a_joint_was_found_opens_over_the_results_and_gives_way_to_them(
     assert window.bar.isVisible()
 
 
-def test_progress_is_shown_in_words(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:
-    open_work(endless(Event()))
-    qtbot.waitUntil(lambda: window.working.progress == (0.4, "Left knee"))
-    assert window.pages.currentWidget() is window.working
-    assert window.working.stop.hasFocus()
-
-
-def test_stopping_ends_the_analysis_and_the_window_goes_on(
+def test_progress_is_shown_in_words_and_stopping_ends_the_analysis_and_the_window_goes_on(
     qtbot: QtBot, window: SessionScreen, open_work: OpenWork
 ) -> None:
     ended = Event()
     open_work(endless(ended))
-    qtbot.waitUntil(lambda: window.working.progress[0] > 0)
+    qtbot.waitUntil(lambda: window.working.progress == (0.4, "Left knee"))
+    assert window.pages.currentWidget() is window.working
+    assert window.working.stop.hasFocus()
     QTest.mouseClick(window.working.stop, Qt.MouseButton.LeftButton)
     assert window.pages.currentWidget() is window.empty
     assert window.banner.text == " ".join(STOPPED)
@@ -261,7 +256,7 @@ def test_what_nobody_foresaw_is_reported_and_logged(
     assert "ZeroDivisionError" in caplog.text
 
 
-def test_the_method_changes_what_is_drawn(results: ResultPage) -> None:
+def test_the_method_changes_what_is_drawn_and_gaps_stay_gaps_with_every_one(results: ResultPage) -> None:
     knee = angle(Joint.LEFT_KNEE, True)
     assert knee.orientation_rad is not None
     for method, expected in ((PUBLISHED, knee.published_rad), (ORIENTATION, knee.orientation_rad)):
@@ -273,6 +268,12 @@ def test_the_method_changes_what_is_drawn(results: ResultPage) -> None:
     np.testing.assert_allclose(curve.angle_deg, np.rad2deg(knee.angle_rad))
     assert curve.second_deg is not None
     np.testing.assert_allclose(curve.second_deg, np.rad2deg(knee.published_rad))
+    for method in (RESULT, PUBLISHED, ORIENTATION, BOTH):
+        results.whole.methods.choose(method)
+        for joint in LEG_JOINTS:
+            drawn = drawn_deg(results, joint)
+            assert np.isnan(drawn[GAP]).all()
+            assert np.isfinite(drawn[: GAP.start]).all()
 
 
 def test_enter_presses_the_button_in_focus(window: SessionScreen) -> None:
@@ -294,15 +295,6 @@ def test_arrows_change_the_method(qtbot: QtBot, results: ResultPage) -> None:
     assert results.whole.methods.choice == PUBLISHED
 
 
-def test_gaps_stay_gaps_with_every_method(results: ResultPage) -> None:
-    for method in (RESULT, PUBLISHED, ORIENTATION, BOTH):
-        results.whole.methods.choose(method)
-        for joint in LEG_JOINTS:
-            drawn = drawn_deg(results, joint)
-            assert np.isnan(drawn[GAP]).all()
-            assert np.isfinite(drawn[: GAP.start]).all()
-
-
 def test_without_orientations_that_method_is_off_and_states_why(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
@@ -315,21 +307,18 @@ def test_without_orientations_that_method_is_off_and_states_why(
     assert segment.accessibleName() == "Orientation, no magnetometer"
 
 
-def test_another_recording_is_shown_whole(results: ResultPage) -> None:
+def test_the_whole_is_come_back_to_by_its_button_and_with_another_recording(results: ResultPage) -> None:
+    assert not results.whole.to_whole.isVisible()
     results.whole.charts.zoom(0.5)
+    assert results.whole.shown.text() == "1.5 to 4.5 s of 6.0 s"
     assert results.whole.to_whole.isVisible()
+    QTest.mouseClick(results.whole.to_whole, Qt.MouseButton.LeftButton)
+    assert results.whole.charts.is_whole
+    results.whole.charts.zoom(0.5)
     results.recordings.setCurrentIndex(0)
     assert results.whole.charts.accessibleName() == "Knee and ankle angles of free motion"
     assert results.whole.charts.is_whole
     assert not results.whole.to_whole.isVisible()
-
-
-def test_the_way_back_to_the_whole_is_in_sight_when_it_is_needed(qtbot: QtBot, results: ResultPage) -> None:
-    assert not results.whole.to_whole.isVisible()
-    results.whole.charts.zoom(0.5)
-    assert results.whole.shown.text() == "1.5 to 4.5 s of 6.0 s"
-    QTest.mouseClick(results.whole.to_whole, Qt.MouseButton.LeftButton)
-    assert results.whole.charts.is_whole
 
 
 def test_simulated_is_stated_in_header_and_charts_and_only_then(
@@ -343,7 +332,7 @@ def test_simulated_is_stated_in_header_and_charts_and_only_then(
     assert results.whole.charts.knee.simulated.isVisible()
 
 
-def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
+def test_details_state_how_each_joint_was_found_and_findings_the_gravest_first(results: ResultPage) -> None:
     results.quality.engineering.click()
     rows = [line.split("\t") for line in results.quality.facts.as_text().split("\n")]
     assert rows == [
@@ -364,10 +353,6 @@ def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
     assert {at for at, cell in cells if isinstance(cell, TextCell) and cell.mark is not None} == marked
     assert received[3, 4] == "right ankle, Direction: uncertain, needs checking"
     assert "1.3" in model.index(2, 1).data(Qt.ItemDataRole.ToolTipRole)
-
-
-def test_findings_are_reported_the_gravest_first(results: ResultPage) -> None:
-    results.quality.engineering.click()
     reported = [row.accessibleName() for row in results.quality.findings.findChildren(FindingRow)]
     assert [text.split(":")[0] for text in reported] == ["serious", "warning", "info"]
     assert "0.42 s" in reported[1]

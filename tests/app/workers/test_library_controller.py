@@ -15,6 +15,7 @@ from typing import cast
 import pytest
 from PySide6.QtCore import QThread
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.storage.data_key import LibraryLockedError
 from app.storage.journal.disk import Room
@@ -27,7 +28,7 @@ from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.system.progress import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_holder import LibraryHolder
-from app.workers.library_state import Joined, LibraryPlace, OpenedState, Unlocked
+from app.workers.library_state import Joined, LibraryPlace, OpenedState, Reopened, Unlocked
 from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
 from core.session import Patient
@@ -677,22 +678,6 @@ def test_the_key_is_changed_and_who_left_opens_nothing(
     assert [one.is_active for one in operators if one.code == "ab"] == [False]
 
 
-def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
-    qtbot: QtBot, controller: LibraryController, folder: Path
-) -> None:
-    asker = Asker()
-    opened(qtbot, controller, folder, PASSPHRASE, "hk")
-    with open_library(folder, PASSPHRASE, "hk"):
-        controller.reopen(
-            lambda holder, report: holder.change_key("", report),
-            *asker.all_ears,
-        )
-        qtbot.waitUntil(lambda: bool(asker.results or asker.refusals))
-    assert asker.refusals == [("Another program has the library open.", "Close that program, then try again.")]
-    controller.run(lambda library: len(library.library.operators.list()), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results))
-
-
 def test_what_is_no_address_is_refused_and_leaves_nothing(
     qtbot: QtBot, controller: LibraryController, tmp_path: Path
 ) -> None:
@@ -706,29 +691,32 @@ def test_what_is_no_address_is_refused_and_leaves_nothing(
     assert not (tmp_path / "station").exists()
 
 
-def test_a_move_that_is_refused_leaves_the_library_open(
-    qtbot: QtBot, controller: LibraryController, folder: Path
+def test_a_change_of_the_key_or_a_move_that_is_refused_leaves_the_library_open(
+    qtbot: QtBot, controller: LibraryController, folder: Path, snapshot: SnapshotAssertion
 ) -> None:
     state = opened(qtbot, controller, folder, PASSPHRASE, "hk")
-    asker = Asker()
-    controller.reopen(
-        lambda holder, report: holder.move_to_server("nowhere", "", str(folder), report),
-        *asker.all_ears,
-    )
-    qtbot.waitUntil(lambda: bool(asker.refusals))
-    assert "This is not the address of a PostgreSQL server" in asker.refusals[0][0]
+
+    def refused(ask: Callable[[LibraryHolder, Report], Reopened]) -> list[tuple[str, str]]:
+        asker = Asker()
+        controller.reopen(ask, *asker.all_ears)
+        qtbot.waitUntil(lambda: bool(asker.results or asker.refusals))
+        assert controller.state is not None
+        return asker.refusals
+
+    found = {
+        "moved to what is no server": refused(
+            lambda holder, report: holder.move_to_server("nowhere", "", str(folder), report)
+        )
+    }
     assert controller.state is not None
     assert controller.state.library is state.library
+    found["brought back from a folder"] = refused(lambda holder, report: holder.bring_back(report))
+    with open_library(folder, PASSPHRASE, "hk"):
+        found["a new key where another program has it open"] = refused(
+            lambda holder, report: holder.change_key("", report)
+        )
+    assert found == snapshot
     assert asked(qtbot, controller, lambda library: library.library.patients.search()) == ()
-
-
-def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
-    opened(qtbot, controller, folder, PASSPHRASE, "hk")
-    asker = Asker()
-    controller.reopen(lambda holder, report: holder.bring_back(report), *asker.all_ears)
-    qtbot.waitUntil(lambda: bool(asker.refusals))
-    assert "This library is already in a folder" in asker.refusals[0][0]
-    assert controller.state is not None
 
 
 def test_a_watch_that_waits_for_a_server_holds_nobody_up(

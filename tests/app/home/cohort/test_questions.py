@@ -67,18 +67,6 @@ def test_a_table_is_asked_beside_the_screen_and_each_change_again(
     qtbot.waitUntil(lambda: page.found is not None and page.found.question == required)
 
 
-def test_what_is_shown_is_the_answer(qtbot: QtBot, home: Home, table: Path) -> None:
-    shown = asked(qtbot, home, table).found
-    assert shown is not None
-    with ParameterTable.opened(table) as opened:
-        required = answer(opened, shown.question)
-    assert [one.group for one in shown.rows] == [one.group for one in required.rows]
-    # two threads add up in any order
-    assert [one.mean for one in shown.rows] == pytest.approx(
-        [one.mean for one in required.rows], rel=1e-12, nan_ok=True
-    )
-
-
 def test_everything_is_reached_by_tab_in_the_order_of_reading(qtbot: QtBot, home: Home, table: Path) -> None:
     page = asked(qtbot, home, table)
     page.choose_table.setFocus()
@@ -91,15 +79,24 @@ def test_everything_is_reached_by_tab_in_the_order_of_reading(qtbot: QtBot, home
     assert reached == required
 
 
-def test_what_is_in_sight_is_saved_with_all_its_numbers(qtbot: QtBot, home: Home, table: Path, tmp_path: Path) -> None:
+def test_what_is_shown_is_the_answer_and_is_saved_with_all_its_numbers(
+    qtbot: QtBot, home: Home, table: Path, tmp_path: Path
+) -> None:
     page = asked(qtbot, home, table)
+    assert page.found is not None
+    with ParameterTable.opened(table) as opened:
+        required = answer(opened, page.found.question)
+    assert [one.group for one in page.found.rows] == [one.group for one in required.rows]
+    # two threads add up in any order
+    assert [one.mean for one in page.found.rows] == pytest.approx(
+        [one.mean for one in required.rows], rel=1e-12, nan_ok=True
+    )
     assert home.bar.primary.text() == "Save as CSV"
     out = tmp_path / "groups.csv"
     home.questions.write(out)
     qtbot.waitUntil(lambda: "Groups saved." in home.banner.text)
     with out.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert page.found is not None
     assert [row["group"] for row in rows] == [one.group for one in page.found.rows]
     assert [float(row["mean"]) for row in rows] == [one.mean for one in page.found.rows]
     home.questions.write(tmp_path)  # a folder

@@ -1,6 +1,7 @@
 """Tables that nobody knows: shown as they would be read, changed by keys, confirmed, and kept for their program."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +19,14 @@ from app.widgets.choice import Choice
 from app.wording.translation import use_language
 from core.samples import ImuBlock
 from tests.app.home.importing.test_importing import choices, shown
-from tests.devices.files.test_public_layouts import LEFT, RIGHT, no_header, rows_of, write
-from tests.devices.files.test_table_preview import NAMES, table
+from tests.devices.files import test_table_preview
+from tests.devices.files.test_public_layouts import MovedSensor, no_header, rows_of, write
+from tests.devices.files.test_table_preview import NAMES
 
 KNOWN = ("time_s", "ax", "ay", "az", "gx", "gy", "gz")  # columns that state what they hold
-READY = "1 sensor · 8.0 s · 100 Hz · gravity 9.9 m/s²"
+LEFT, RIGHT = MovedSensor(rows=400), MovedSensor(rows=400, phase=1.0)  # half as long: each is read and drawn often
+table = partial(test_table_preview.table, motion=LEFT)
+READY = "1 sensor · 4.0 s · 100 Hz · gravity 9.9 m/s²"
 
 
 def explain(qtbot: QtBot, home: Home, *paths: Path) -> TableForm:
@@ -90,13 +94,6 @@ def test_why_a_table_is_refused_is_stated_once_and_in_which_line(qtbot: QtBot, h
     assert shown(home.importing.page).count("the line has 8 columns") == 1
 
 
-def test_no_option_of_the_command_line_is_shown(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
-    form = explain(qtbot, home, table(tmp_path / "a.csv"))
-    press_to(form.time, "none")
-    wait_for(qtbot, form, "The samples in the file have no times.")
-    assert form.notice.text.endswith("time_us, or give the sampling rate.")
-
-
 def test_columns_without_names_are_called_by_their_places(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     use_language("de")
     try:
@@ -107,12 +104,6 @@ def test_columns_without_names_are_called_by_their_places(qtbot: QtBot, home: Ho
         assert "column 2" not in shown(home.importing.page)
     finally:
         use_language("en")
-
-
-def test_a_table_that_is_recognised_is_not_asked_about(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
-    home.importing.read([table(tmp_path / "walk.csv", names=KNOWN)])
-    page = wait_for_draft(qtbot, home)
-    assert not page.table.isVisible()
 
 
 Which = Callable[[TableForm], Choice]
@@ -196,6 +187,7 @@ def test_what_is_kept_can_be_changed_and_forgotten(qtbot: QtBot, home: Home, tmp
     path = table(tmp_path / "walk_left_thigh.csv", names=KNOWN)
     home.importing.read([path])
     page = wait_for_draft(qtbot, home)
+    assert not page.table.isVisible()  # it is recognised
     page.draft.columns.click()
     qtbot.waitUntil(page.table.isVisible)
     press_to(page.table.gyr_unit, "mdeg/s")
