@@ -1,5 +1,6 @@
 """Common set-up of the tests of files. A small session on disk, to be spoilt in one way at a time."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,6 +25,7 @@ def make_session(tmp_path: Path) -> MakeSession:
 
     def make(files: dict[str, str | bytes] | None = None, toml: str | bytes = TOML) -> Path:
         folder = tmp_path / "session"
+        shutil.rmtree(folder, ignore_errors=True)  # of the case before
         (folder / "walk_1").mkdir(parents=True)
         (folder / "session.toml").write_bytes(toml if isinstance(toml, bytes) else toml.encode())
         contents = {"left_thigh.csv": "\n".join([COLUMNS, *ROWS, ""])} if files is None else files

@@ -30,9 +30,9 @@ from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.site_files import REQUIRED
 from devices.files.xsens_mtmanager import mtmanager_trial
+from tests.devices.files.conftest import MakeSession
 from tests.trials_of_files import import_with
 
-MakeSession = Callable[..., Path]
 EXPORT = """// Update Rate: 100.0Hz
 PacketCounter\tAcc_X\tAcc_Y\tAcc_Z\tGyr_X\tGyr_Y\tGyr_Z
 {}"""
