@@ -12,13 +12,13 @@ import h5py
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from syrupy.assertion import SnapshotAssertion
 
 from core.body import Site
 from core.samples import RateKind
 from devices.files import hdf5
 from devices.files.apdm import apdm_trial
 from devices.files.formats import recognised
-from devices.files.refusal import FileRefusedError
 from tests.trials_of_files import import_with, refused
 
 FindData = Callable[[str], Path]
@@ -167,37 +167,28 @@ def test_orientations_of_zeros_are_none(tmp_path: Path) -> None:
     assert np.flatnonzero(np.isnan(block.q_earth_from_sensor[:, 0])).tolist() == [3]
 
 
-def test_other_units_are_refused(tmp_path: Path) -> None:
-    in_g = version_5(tmp_path / "a.h5", {"1": ("A", stamps(), still(acc=1.0))})
-    assert 'the median acceleration of "A" is 1.00, which does not match gravity in m/s2' in refusal(in_g)
-    in_degrees = version_5(tmp_path / "b.h5", {"1": ("A", stamps(), still(rate=180.0))})
-    assert 'the angular rates of "A" are in deg/s, not in rad/s' in refusal(in_degrees)
-    reported = version_5(tmp_path / "c.h5", {"1": ("A", stamps(), still())})
+def test_other_units_and_what_is_missing_are_refused(tmp_path: Path, snapshot: SnapshotAssertion) -> None:
+    def of(samples: Samples, time: NDArray[np.uint64] | None = None) -> str:
+        sensors = {"1": ("A", stamps() if time is None else time, samples)}
+        return refusal(version_5(tmp_path / "a.h5", sensors))
+
+    reported = version_5(tmp_path / "b.h5", {"1": ("A", stamps(), still())})
     with h5py.File(reported, "r+") as file:
         file["Sensors/1/Accelerometer"].attrs["Units"] = "g"
-    assert 'c.h5, Sensors/1/Accelerometer: the values are in "g", expected m/s^2' in refusal(reported)
-
-
-def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
-    samples = still()
-    del samples["Gyroscope"]
-    assert 'the file contains no angular rates of "A"' in refusal(
-        version_5(tmp_path / "a.h5", {"1": ("A", stamps(), samples)})
-    )
-    short = {**still(), "Accelerometer": np.ones((39, 3))}
-    assert "b.h5, Sensors/1/Accelerometer: the values have the shape (39, 3) instead of (40, 3)" in refusal(
-        version_5(tmp_path / "b.h5", {"1": ("A", stamps(), short)})
-    )
     back = stamps()
     back[20:] -= 1_000_000
-    assert "c.h5, A, sample 21: Time goes back from" in refusal(
-        version_5(tmp_path / "c.h5", {"1": ("A", back, still())})
-    )
-    assert "APDM file version 2 is not supported, only versions 3 to 5" in refusal(version_4(tmp_path / "d.h5", 2))
-    whole = version_5(tmp_path / "e.h5", {"1": ("A", stamps(), still())}).read_bytes()
-    (tmp_path / "f.h5").write_bytes(whole[: len(whole) // 2])
-    assert "f.h5: the file cannot be read as HDF5" in refusal(tmp_path / "f.h5")
-    assert "the file lists no sensors" in refusal(version_5(tmp_path / "g.h5", {}))
+    assert {
+        "force in g": of(still(acc=1.0)),
+        "rates in deg/s": of(still(rate=180.0)),
+        "another unit is reported": refusal(reported),
+        "no rates": of({name: values for name, values in still().items() if name != "Gyroscope"}),
+        "a sample too few": of({**still(), "Accelerometer": np.ones((39, 3))}),
+        "times that go back": of(still(), back),
+        "an older version": refusal(version_4(tmp_path / "a.h5", 2)),
+        "no sensors": refusal(version_5(tmp_path / "a.h5", {})),
+    } == snapshot
+    reported.write_bytes(reported.read_bytes()[: reported.stat().st_size // 2])
+    assert "b.h5: the file cannot be read as HDF5" in refusal(reported)
 
 
 def test_values_that_stand_in_another_file_are_not_read(tmp_path: Path) -> None:
@@ -219,8 +210,7 @@ def test_values_that_stand_in_another_file_are_not_read(tmp_path: Path) -> None:
 def test_other_hdf5_is_not_taken_for_it(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["Sensors/1/Accelerometer"] = np.ones((3, 3))
-    with pytest.raises(FileRefusedError, match="the file format is not recognised"):
-        recognised([tmp_path / "a.h5"])
+    assert "the file format is not recognised" in refused(recognised, [tmp_path / "a.h5"])
 
 
 def test_without_its_library_it_states_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
