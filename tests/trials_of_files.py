@@ -22,9 +22,9 @@ def import_with(
     return place_trial(trial(files, rate_hz), placement, recording)
 
 
-def refused(read: Callable[..., object], *given: object) -> str:
+def refused(read: Callable[..., object], *given: object, **named: object) -> str:
     """The one line by which these files are refused."""
     with pytest.raises(FileRefusedError) as caught:
-        read(*given)
+        read(*given, **named)
     assert str(caught.value).isprintable()
     return str(caught.value)

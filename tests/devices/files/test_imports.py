@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from core.body import Site
 from core.findings import Finding, Severity
@@ -15,6 +16,7 @@ from devices.files.imports import add_recording, folder_for, free_name, parse_ma
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from tests.trials_of_files import refused
 
 
 def block(sensor: str) -> ImuBlock:
@@ -34,19 +36,9 @@ def test_a_map_names_sites() -> None:
     }
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", "does not assign a file to a sensor position"),
-        ("left_thigh", "does not assign a file to a sensor position"),
-        ("left_thigh=", "does not assign a file to a sensor position"),
-        ("sternum=a", '"sternum" is not a sensor position'),
-        ("left_thigh=a,left_thigh=b", "left_thigh is given twice"),
-    ],
-)
-def test_a_wrong_map_is_refused(text: str, words: str) -> None:
-    with pytest.raises(FileRefusedError, match=words):
-        parse_map(text)
+def test_a_wrong_map_is_refused(snapshot: SnapshotAssertion) -> None:
+    texts = ("", "left_thigh", "left_thigh=", "sternum=a", "left_thigh=a,left_thigh=b")
+    assert {text: refused(parse_map, text) for text in texts} == snapshot
 
 
 def sensor(path: Path, *ids: str, start_s: float = 0.0) -> ImportedSensor:
@@ -80,25 +72,17 @@ def test_a_sensor_is_found_by_the_path_of_its_file(
         assert place_trial(trial, {Site.LEFT_FOOT: value}, "walk 1").imu[Site.LEFT_FOOT].sensor == "u_00B40002"
 
 
-@pytest.mark.parametrize(
-    ("placement", "words"),
-    [
-        (
-            {Site.LEFT_FOOT: "00B49999"},
-            r"matches no file and no sensor\. Available sensors: t_00B40001.txt \(00B40001\), t_",
-        ),
-        ({Site.LEFT_FOOT: "00B40002"}, "is ambiguous: t_00B40002.txt, u_00B40002.txt"),
-        (
-            {Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"},
-            "t_00B40001.txt is assigned to two sensor positions",
-        ),
-        ({Site.LEFT_FOOT: "00B40003"}, "b_00B40003.txt: there is no acceleration"),
-        ({Site.LEFT_FOOT: "b_00B40003.txt"}, "b_00B40003.txt: there is no acceleration"),
-    ],
-)
-def test_a_map_that_fits_no_sensor_is_refused(trial: ImportedTrial, placement: dict[Site, str], words: str) -> None:
-    with pytest.raises(FileRefusedError, match=words):
-        place_trial(trial, placement, "walk 1")
+def test_a_map_that_fits_no_sensor_is_refused(trial: ImportedTrial, snapshot: SnapshotAssertion) -> None:
+    foot = Site.LEFT_FOOT
+    placements: dict[str, dict[Site, str]] = {
+        "an unknown id": {foot: "00B49999"},
+        "an id of two files": {foot: "00B40002"},
+        "one sensor at two sites": {foot: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"},
+        "the id of a file that cannot be read": {foot: "00B40003"},
+        "the name of a file that cannot be read": {foot: "b_00B40003.txt"},
+    }
+    found = {case: refused(place_trial, trial, placement, "walk 1") for case, placement in placements.items()}
+    assert found == snapshot
 
 
 def test_time_starts_with_the_first_sample_that_is_placed(tmp_path: Path) -> None:
@@ -107,17 +91,13 @@ def test_time_starts_with_the_first_sample_that_is_placed(tmp_path: Path) -> Non
     trial = ImportedTrial("xsens-mtmanager", sensors)
     found = place_trial(trial, {Site.LEFT_FOOT: "b", Site.LEFT_SHANK: "c"}, "walk 1")
     assert [found.imu[site].time_s[0] for site in (Site.LEFT_FOOT, Site.LEFT_SHANK)] == [0.5, 0.0]
-    with pytest.raises(
-        FileRefusedError,
-        match=r"b.txt: one sensor's data start after the last sample of a.txt, so both do not belong to one trial",
-    ):
-        place_trial(trial, {Site.LEFT_FOOT: "a", Site.LEFT_SHANK: "b"}, "walk 1")
+    apart = refused(place_trial, trial, {Site.LEFT_FOOT: "a", Site.LEFT_SHANK: "b"}, "walk 1")
+    assert "b.txt: one sensor's data start after the last sample of a.txt, so both do not belong to one trial" in apart
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     for name in ("", "xsens-mtmanager"):
-        with pytest.raises(FileRefusedError, match="this file does not exist"):
-            read_trial(name, [tmp_path / "none.txt"], None)
+        assert "this file does not exist" in refused(read_trial, name, [tmp_path / "none.txt"], None)
 
 
 def test_a_second_import_adds_a_recording(tmp_path: Path) -> None:
@@ -148,14 +128,9 @@ def test_a_sensor_that_changes_is_reported(tmp_path: Path) -> None:
     assert [(f.key, f.where) for f in again.findings] == [("sensor_changed", "walk 2, left_thigh")]
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [("walk 1", "already has a recording with this name"), ("walk_1", 'already contains the recording "walk 1"')],
-)
-def test_a_recording_that_is_there_already_is_refused(name: str, words: str) -> None:
+def test_a_recording_that_is_there_already_is_refused(snapshot: SnapshotAssertion) -> None:
     session = add_recording(Session(()), walk("walk 1"))
-    with pytest.raises(FileRefusedError, match=words):
-        add_recording(session, walk(name))
+    assert {name: refused(add_recording, session, walk(name)) for name in ("walk 1", "walk_1")} == snapshot
 
 
 def test_recordings_are_named_by_their_kind() -> None:

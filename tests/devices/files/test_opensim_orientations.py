@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from core.analysis import analyse
 from core.body import Joint, Site
@@ -104,28 +105,30 @@ def test_a_table_without_rows_is_an_empty_recording(tmp_path: Path) -> None:
     assert len(sensor.block) == 0
 
 
-def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
+def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path, snapshot: SnapshotAssertion) -> None:
     path = tmp_path / "a.sto"
 
     def good() -> Path:
         return sto(path, swinging_sensor(), swinging_sensor())
 
-    assert "there is no header line after endheader" in refusal(edited(good(), "endheader", "end"))
-    assert "a.sto, line 6: the header line does not begin with time" in refusal(edited(good(), "time", "t"))
-    assert 'line 6: column "femur_l_imu" appears twice' in refusal(edited(good(), "tibia_l_imu", "femur_l_imu"))
-    assert "line 9: the line has 2 cells, but the header has 3" in refusal(edited(good(), "0.020000\t", "0.020000"))
-    assert "line 9: a value is not a number" in refusal(edited(good(), "0.020000\t", "0.020000\tx"))
-    times = {f"{0.01 * k:.6f}": f"{0.01 * k - 0.5:.6f}" for k in range(100, 300)}
+    def of(old: str, new: str) -> str:
+        return refusal(edited(good(), old, new))
+
     back = good().read_text()
-    for time_s, earlier_s in times.items():
-        back = back.replace(f"{time_s}\t", f"{earlier_s}\t")
+    for k in range(100, 300):
+        back = back.replace(f"{0.01 * k:.6f}\t", f"{0.01 * k - 0.5:.6f}\t")
     path.write_text(back)
-    assert "line 107: time goes back from 0.99 to 0.5" in refusal(path)
-    assert "line 9: the orientation is not a valid rotation" in refusal(edited(good(), "0.020000\t", "0.020000\t9"))
-    assert "is not an orientation of four numbers" in refusal(edited(good(), "0.020000\t", "0.020000\t1.0,"))
-    assert (
-        "the times in the file are not evenly spaced, so angular rates cannot be derived from the orientation"
-    ) in refusal(edited(good(), "0.020000\t", "0.025000\t"))
+    assert {
+        "times go back": refusal(path),
+        "no end of the head": of("endheader", "end"),
+        "no times": of("time", "t"),
+        "a sensor twice": of("tibia_l_imu", "femur_l_imu"),
+        "a cell too few": of("0.020000\t", "0.020000"),
+        "an orientation of no length": of("0.020000\t", "0.020000\t9"),
+        "times that are not even": of("0.020000\t", "0.025000\t"),
+    } == snapshot
+    assert "is not an orientation of four numbers" in of("0.020000\t", "0.020000\t1.0,")
+    assert "line 9: a value is not a number" in of("0.020000\t", "0.020000\tx")  # then in NumPy's words
     path.write_bytes(good().read_bytes().replace(b"0.020000\t", b"0.02\xff\xfe\t"))
     assert "a.sto, line 9: a value is not a number" in refusal(path)
 
