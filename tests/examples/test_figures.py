@@ -23,7 +23,9 @@ from tests.examples import (
     simulate_and_compare,
     timed_test,
 )
-from tests.simulated import simulation_of
+from tests.simulated import analysis_of, simulation_of
+
+OF_A_FOLDER = (angles_as_a_frame, axes_of_a_joint, compare_walks, export_tables, mean_cycle)
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +38,13 @@ def session(walked: SimulatedSession, tmp_path_factory: pytest.TempPathFactory) 
     folder = tmp_path_factory.mktemp("figures") / "session"
     write_session(walked.session, folder)
     return folder
+
+
+@pytest.fixture(autouse=True)
+def _one_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the session that all of these read."""
+    for example in OF_A_FOLDER:
+        monkeypatch.setattr(example, "analyse", analysis_of)
 
 
 @pytest.fixture

@@ -30,8 +30,13 @@ from devices.simulation.walker import (
 from devices.simulation.walker_body import make_leg
 
 ComplexArray = NDArray[np.complex128]
-CLEAN = WalkerSettings(seed=2, errors=NO_ERRORS)
+CLEAN = WalkerSettings(seed=2, errors=NO_ERRORS, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=4)))
 DENSE_HZ = 2000.0
+
+
+@pytest.fixture(scope="module")
+def clean() -> SimulatedSession:
+    return simulate(CLEAN)
 
 
 @pytest.fixture(scope="module")
@@ -91,17 +96,18 @@ def test_the_same_settings_give_the_same_samples() -> None:
             np.testing.assert_array_equal(a.imu[site].acc_m_s2, b.imu[site].acc_m_s2)
 
 
-def test_another_seed_gives_another_patient() -> None:
-    axes = [simulate(replace(CLEAN, seed=s)).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE] for s in (1, 2)]
+def test_another_seed_gives_another_patient(clean: SimulatedSession) -> None:
+    other = simulate(replace(CLEAN, seed=1))
+    axes = [made.truth.recordings["walk 1"].joints[Joint.LEFT_KNEE] for made in (other, clean)]
     assert np.abs(axes[0].axis_proximal - axes[1].axis_proximal).max() > 0.05
     assert axes[0].standing_rad != axes[1].standing_rad
 
 
-def test_faults_and_losses_leave_body_and_mounting_alone() -> None:
-    plain = simulate(CLEAN)
-    other = simulate(WalkerSettings(seed=2, loss_fraction=0.2, tissue=Tissue.SOFT, clock_late_s={Site.LEFT_FOOT: 0.02}))
+def test_faults_and_losses_leave_body_and_mounting_alone(clean: SimulatedSession) -> None:
+    late, errors = {Site.LEFT_FOOT: 0.02}, WalkerSettings().errors
+    other = simulate(replace(CLEAN, errors=errors, loss_fraction=0.2, tissue=Tissue.SOFT, clock_late_s=late))
     for joint in LEG_JOINTS:
-        a, b = (s.truth.recordings["walk 1"].joints[joint] for s in (plain, other))
+        a, b = (s.truth.recordings["walk 1"].joints[joint] for s in (clean, other))
         np.testing.assert_array_equal(a.axis_distal, b.axis_distal)
         np.testing.assert_array_equal(a.centre_proximal_m, b.centre_proximal_m)
 
@@ -140,31 +146,26 @@ def test_both_sensors_see_the_same_joint_centre(dense: SimulatedSession, name: s
 
 
 @pytest.mark.parametrize("side", list(Side))
-def test_the_clinical_sign_holds_on_both_legs(side: Side) -> None:
+def test_the_clinical_sign_holds_on_both_legs(clean: SimulatedSession, side: Side) -> None:
     """The shank turns forward when the knee extends in late swing: independent of any angle curve."""
-    simulated = simulate(CLEAN)
     knee, ankle = Joint(f"{side}_knee"), Joint(f"{side}_ankle")
-    _, distal, truth = pair(simulated, "walk 1", knee)
+    _, distal, truth = pair(clean, "walk 1", knee)
     rate = np.sort(distal.gyr_rad_s @ truth.axis_distal)
     assert -rate[5] > 1.2 * rate[-5]
-    of_ankle = simulated.truth.recordings["walk 1"].joints[ankle].axis_proximal
+    of_ankle = clean.truth.recordings["walk 1"].joints[ankle].axis_proximal
     assert of_ankle @ truth.axis_distal < -0.9
     assert np.rad2deg(truth.angle_rad).max() > 50.0
 
 
-def test_the_ankle_is_no_hinge_and_a_prosthetic_one_is() -> None:
+def test_the_ankle_is_no_hinge_and_a_prosthetic_one_is_and_a_socket_keeps_the_thigh_soft() -> None:
     simulated = simulate(replace(CLEAN, tissue=Tissue.SOFT, prosthetic_side=Side.LEFT))
     for name in ("free motion", "walk 1"):
         sound = off_axis_rate(*pair(simulated, name, Joint.RIGHT_ANKLE))
         prosthetic = off_axis_rate(*pair(simulated, name, Joint.LEFT_ANKLE))
         assert sound > 0.1
         assert prosthetic < 1e-6
-    assert simulated.session.patient.prosthetic_side == "left"
-
-
-def test_a_socket_keeps_the_thigh_soft() -> None:
-    simulated = simulate(replace(CLEAN, tissue=Tissue.SOFT, prosthetic_side=Side.LEFT))
     assert off_axis_rate(*pair(simulated, "walk 1", Joint.LEFT_KNEE)) > 0.05
+    assert simulated.session.patient.prosthetic_side == "left"
 
 
 @pytest.mark.endurance
@@ -199,8 +200,8 @@ def test_real_tissue_moves_above_3_hz_as_that_of_people_does() -> None:
 
 
 @pytest.mark.endurance
-def test_the_functional_axis_leans_with_the_knees_own_rotation() -> None:
-    rigid = simulate(CLEAN).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
+def test_the_functional_axis_leans_with_the_knees_own_rotation(clean: SimulatedSession) -> None:
+    rigid = clean.truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
     soft = simulate(replace(CLEAN, tissue=Tissue.SOFT)).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
     np.testing.assert_allclose(rigid.functional_distal, rigid.axis_distal, atol=1e-6)
     for own, axis in ((soft.functional_proximal, soft.axis_proximal), (soft.functional_distal, soft.axis_distal)):
@@ -216,8 +217,8 @@ def test_lag_is_what_brings_the_distal_clock_to_the_proximal_one() -> None:
     assert joints[Joint.RIGHT_KNEE].lag_s == 0.0
 
 
-def test_angles_are_reported_at_the_proximal_sensors_stamps() -> None:
-    plain = simulate(CLEAN).truth.recordings["walk 1"].joints[Joint.LEFT_ANKLE]
+def test_angles_are_reported_at_the_proximal_sensors_stamps(clean: SimulatedSession) -> None:
+    plain = clean.truth.recordings["walk 1"].joints[Joint.LEFT_ANKLE]
     late = simulate(replace(CLEAN, clock_late_s={Site.LEFT_SHANK: 0.03})).truth.recordings["walk 1"]
     np.testing.assert_allclose(late.joints[Joint.LEFT_ANKLE].angle_rad[3:], plain.angle_rad[:-3], atol=1e-12)
     lossy = simulate(replace(CLEAN, loss_fraction=0.2))
@@ -226,8 +227,8 @@ def test_angles_are_reported_at_the_proximal_sensors_stamps() -> None:
     np.testing.assert_allclose(truth.angle_rad, np.interp(truth.time_s, plain.time_s, plain.angle_rad), atol=1e-9)
 
 
-def test_standing_is_quiet_and_its_angle_is_reported() -> None:
-    proximal, _, truth = pair(simulate(CLEAN), "standing", Joint.LEFT_KNEE)
+def test_standing_is_quiet_and_its_angle_is_reported(clean: SimulatedSession) -> None:
+    proximal, _, truth = pair(clean, "standing", Joint.LEFT_KNEE)
     assert abs(truth.angle_rad.mean() - truth.standing_rad) < 1e-3
     assert np.deg2rad(0.3) < truth.standing_rad < np.deg2rad(10.0)
     size = np.linalg.norm(proximal.gyr_rad_s, axis=1)

@@ -52,6 +52,7 @@ def test_nothing_jumps_where_bouts_and_sitting_meet(name: str, request: pytest.F
 
 def test_a_seated_thigh_lies_level_and_a_standing_one_does_not(up_and_go: SimulatedCourse) -> None:
     standing, course = up_and_go.session.recordings
+    assert Site.PELVIS not in course.imu  # which nobody asked for
     truth = up_and_go.truth
     site = Site.LEFT_THIGH
     upright = standing.imu[site].acc_m_s2.mean(axis=0)
@@ -116,7 +117,7 @@ def footholds(course: TimedCourse) -> FloatArray:
 @pytest.mark.parametrize("cone_m", [3.0, 5.0])
 @pytest.mark.parametrize("is_unwound", [True, False])
 def test_an_up_and_go_leads_round_its_cone_and_back_to_the_chair(cone_m: float, is_unwound: bool) -> None:
-    for seed in range(4):
+    for seed in range(2):
         course = draw_course(CourseKind.UP_AND_GO, seed)
         how = replace(course.up_and_go, cone_m=cone_m, is_unwound=is_unwound, overshoot_m=0.0)
         last, far = np.linalg.norm(footholds(replace(course, up_and_go=how)), axis=1)
@@ -137,7 +138,7 @@ def test_an_up_and_go_that_is_spoiled_leads_elsewhere() -> None:
 
 
 def test_the_parts_of_an_up_and_go_follow_each_other() -> None:
-    for seed in range(6):
+    for seed in range(3):
         parts_s = simulate_course(
             replace(draw_course(CourseKind.UP_AND_GO, seed), sites=(Site.LEFT_FOOT,))
         ).truth.parts_s
@@ -208,8 +209,3 @@ def test_a_pelvis_turns_with_the_way_and_leans_before_the_seat_is_left() -> None
     clock = block.time_s
     assert np.median(tilt[clock < left_s - 1.2]) < np.deg2rad(3.0)  # seated, upright
     assert tilt[np.abs(clock - left_s) < 0.5].max() > np.deg2rad(15.0)
-
-
-def test_without_a_pelvis_a_course_is_as_it_was() -> None:
-    feet = replace(UP_AND_GO, sites=(Site.LEFT_FOOT,))
-    assert Site.PELVIS not in simulate_course(feet).session.recordings[1].imu
