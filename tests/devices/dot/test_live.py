@@ -15,7 +15,7 @@ from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
-from tests.devices.dot.worn_dots import WornDots, not_there
+from tests.devices.dot.worn_dots import WornDots, not_there, opened
 
 
 def stamps_off_s(wearing: WornDots, every: Sequence[DecodedSensor]) -> list[FloatArray]:
@@ -33,9 +33,7 @@ def stamps_off_s(wearing: WornDots, every: Sequence[DecodedSensor]) -> list[Floa
 
 
 def test_six_are_synchronised_and_what_they_took_is_there_float_for_float(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(loss=0.01 * number, doubles=0.02) for number in range(6)])
-    wearing.open()
-    wearing.measure(30.0)
+    wearing = opened(radio, [DotFaults(loss=0.01 * number, doubles=0.02) for number in range(6)], measured_s=30.0)
     every = wearing.decoded()
     off_s = stamps_off_s(wearing, every)
     for number, one in enumerate(every):
@@ -51,18 +49,14 @@ def test_six_are_synchronised_and_what_they_took_is_there_float_for_float(radio:
 @pytest.mark.endurance
 def test_stamped_alone_their_links_would_part_them(radio: VirtualRadio) -> None:
     """So that the limit above means something."""
-    wearing = WornDots(radio, [DotFaults() for _ in range(6)])
-    wearing.open()
-    wearing.measure(20.0)
+    wearing = opened(radio, [DotFaults() for _ in range(6)], measured_s=20.0)
     alone = [next(iter(decoder.finish().values())) for decoder in wearing.decoders]
     assert max(np.abs(each).max() for each in stamps_off_s(wearing, alone)) > 0.004
 
 
 @pytest.mark.endurance
 def test_live_stamps_are_of_one_clock_too(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults() for _ in range(6)])
-    wearing.open()
-    wearing.measure(20.0)
+    wearing = opened(radio, [DotFaults() for _ in range(6)], measured_s=20.0)
     ends_s = []
     for number, blocks in enumerate(wearing.live):
         truth_s = wearing.truth(number)[1][wearing.began[number] :]
@@ -74,9 +68,7 @@ def test_live_stamps_are_of_one_clock_too(radio: VirtualRadio) -> None:
 
 
 def test_what_is_cut_is_damaged_and_lost_and_no_more(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(cut=0.02), DotFaults()])
-    wearing.open()
-    wearing.measure(20.0)
+    wearing = opened(radio, [DotFaults(cut=0.02), DotFaults()], measured_s=20.0)
     cut, whole = wearing.decoded()
     assert cut.counts.damaged > 5
     assert abs(cut.counts.lost - cut.counts.damaged) <= 1, "but for one at an end"
@@ -95,9 +87,7 @@ def test_a_clock_that_begins_again_while_it_measures_loses_nothing(radio: Virtua
 
 
 def test_a_sensor_that_does_not_know_the_full_mode_streams_the_plain_one(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(has_26=False), DotFaults()])
-    wearing.open()
-    wearing.measure(5.0)
+    wearing = opened(radio, [DotFaults(has_26=False), DotFaults()], measured_s=5.0)
     plain, full = wearing.decoded()
     assert wearing.sources[0].info.settings["mode"] == 21
     assert plain.block.q_earth_from_sensor is None
@@ -106,9 +96,7 @@ def test_a_sensor_that_does_not_know_the_full_mode_streams_the_plain_one(radio: 
 
 
 def test_at_30_hz_loss_is_counted_by_that_rate(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(loss=0.05), DotFaults()], rate_hz=30)
-    wearing.open()
-    wearing.measure(20.0)
+    wearing = opened(radio, [DotFaults(loss=0.05), DotFaults()], rate_hz=30, measured_s=20.0)
     lossy, whole = wearing.decoded()
     assert lossy.counts.lost == not_there(wearing.rows(0, lossy)) > 5
     assert whole.counts.lost == 0
@@ -135,8 +123,7 @@ def test_the_steps_are_reported_with_their_waits(radio: VirtualRadio) -> None:
 def test_one_of_five_that_fails_once_is_tried_again_with_all(radio: VirtualRadio, result: int) -> None:
     faults = [DotFaults() for _ in range(5)]
     faults[3].sync_results = [result]
-    wearing = WornDots(radio, faults)
-    wearing.open()
+    wearing = opened(radio, faults)
     assert all(dot.is_synchronised for dot in wearing.dots)
     assert len({source.info.settings["clock"] for source in wearing.sources}) == 1
 
@@ -190,9 +177,7 @@ def test_sensors_that_were_synchronised_before_are_first_parted(radio: VirtualRa
 
 
 def test_renewing_between_recordings_gives_sources_the_new_clock_and_keeps_them_streaming(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
-    wearing.measure(2.0)
+    wearing = opened(radio, [DotFaults(), DotFaults()], measured_s=2.0)
     first = wearing.sources[0].info.settings["clock"]
     wearing.group.synchronise()
     wearing.measure(2.0)
@@ -209,9 +194,7 @@ def test_ending_lets_each_have_its_own_clock(radio: VirtualRadio) -> None:
 
 
 def test_one_alone_is_not_synchronised_and_measures(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults()])
-    wearing.open()
-    wearing.measure(5.0)
+    wearing = opened(radio, [DotFaults()], measured_s=5.0)
     assert "clock" not in wearing.sources[0].info.settings
     assert not wearing.dots[0].is_synchronised
     assert len(wearing.decoded()[0].block) > 280
@@ -221,9 +204,7 @@ def test_one_alone_is_not_synchronised_and_measures(radio: VirtualRadio) -> None
 
 
 def test_a_lost_link_costs_what_was_sent_meanwhile_and_starts_nothing_again(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults() for _ in range(3)])
-    wearing.open()
-    wearing.measure(5.0)
+    wearing = opened(radio, [DotFaults() for _ in range(3)], measured_s=5.0)
     clock = wearing.sources[1].info.settings["clock"]
     wearing.air.drop(wearing.dots[1])
     wearing.dots[1].faults.unreachable_until_ns = radio.now_ns() + 3_000_000_000
@@ -239,9 +220,7 @@ def test_a_lost_link_costs_what_was_sent_meanwhile_and_starts_nothing_again(radi
 
 
 def test_one_that_was_switched_off_comes_back_on_its_own_clock(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults() for _ in range(3)])
-    wearing.open()
-    wearing.measure(5.0)
+    wearing = opened(radio, [DotFaults() for _ in range(3)], measured_s=5.0)
     wearing.air.drop(wearing.dots[1])
     wearing.dots[1].restart()
     wearing.measure(10.0)
@@ -286,8 +265,7 @@ def test_one_that_was_switched_off_twice_is_stamped_when_it_measured(
 
 
 def test_one_that_streams_already_is_joined_where_its_rate_is_right(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults()])
     again = DotSource(wearing.group.sensors[0], wearing.group)
     wearing.air.drop(wearing.dots[0])
     again.open()
@@ -340,8 +318,7 @@ def test_its_light_and_its_battery(radio: VirtualRadio) -> None:
 
 
 def test_closing_stops_the_stream_and_leaves(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()])
     for source in wearing.sources:
         source.close()
         source.close()

@@ -15,7 +15,7 @@ from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceRestartedError
 from devices.quiet import Quiet
 from tests.devices.dot.virtual_time import VirtualRadio
-from tests.devices.dot.worn_dots import WornDots
+from tests.devices.dot.worn_dots import WornDots, opened
 
 UTC_S = 1_600_000_000
 
@@ -25,8 +25,7 @@ def kept(_data: bytes) -> None:
 
 
 def test_a_rate_is_not_changed_after_synchronising_and_a_recording_at_another_is_refused(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()])
     for dot in wearing.dots:
         dot.write(0x1002, bytes.fromhex("10" + "00" * 23 + "7800" + "00" * 6))
     assert [dot.rate_hz for dot in wearing.dots] == [60, 60]
@@ -85,8 +84,7 @@ def test_asking_how_long_clocks_hold_is_answered_while_they_are_ended(
     radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The screen asks while another thread ends them."""
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()])
     now_ns = radio.now_ns()
 
     def ended_meanwhile() -> int:
@@ -102,8 +100,7 @@ def test_asking_how_long_clocks_hold_is_answered_while_they_are_ended(
 
 
 def test_ready_to_record_they_are_on_one_clock_at_that_rate_and_send_nothing(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()])
     first = wearing.group.clock_of("DOT 0001")
     reported: list[SyncStage] = []
     wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: reported.append(stage))
@@ -121,8 +118,7 @@ def test_ready_to_record_they_are_on_one_clock_at_that_rate_and_send_nothing(rad
 
 
 def test_back_to_streams_they_are_synchronised_at_theirs_and_what_lies_between_is_no_loss(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()])
     wearing.group.make_ready_to_record()
     wearing.group.stream_again()
     assert [(dot.rate_hz, dot.is_synchronised, dot.is_streaming) for dot in wearing.dots] == [(60, True, True)] * 2
@@ -135,8 +131,7 @@ def test_back_to_streams_they_are_synchronised_at_theirs_and_what_lies_between_i
 
 
 def test_where_memories_record_at_the_rate_of_streams_one_clock_serves_both(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()], record_hz=60)
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()], record_hz=60)
     clock, reported = wearing.group.clock_of("DOT 0001"), list[SyncStage]()
     wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: reported.append(stage))
     assert not any(dot.is_streaming for dot in wearing.dots)
@@ -191,8 +186,7 @@ def test_the_seconds_that_are_left_are_reported_and_become_fewer(radio: VirtualR
 
 
 def test_closed_they_are_not_left_synchronised(radio: VirtualRadio) -> None:
-    wearing = WornDots(radio, [DotFaults(), DotFaults()])
-    wearing.open()
+    wearing = opened(radio, [DotFaults(), DotFaults()])
     for source in wearing.sources:
         source.close()
     assert not any(dot.is_synchronised or dot.is_streaming or dot.is_up for dot in wearing.dots)

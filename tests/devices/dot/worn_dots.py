@@ -122,3 +122,19 @@ def _nobody_keeps(_data: bytes) -> None:
 def not_there(rows: list[int]) -> int:
     """How many are missing between the first and the last."""
     return rows[-1] - rows[0] + 1 - len(rows)
+
+
+def opened(
+    radio: VirtualRadio,
+    faults: Sequence[DotFaults],
+    *,
+    measured_s: float = 0.0,
+    rate_hz: int = 60,
+    record_hz: int = 120,
+) -> WornDots:
+    """Sensors that are open, and have measured for a while."""
+    wearing = WornDots(radio, faults, rate_hz, record_hz)
+    wearing.open()
+    if measured_s:
+        wearing.measure(measured_s)
+    return wearing
