@@ -14,9 +14,9 @@ def half_or_whole(names: list[str]) -> tuple[SensorColumns, ...]:
 UNDERSTOOD = """\
 acc_x_m_s2; gyr_z_rad_s; time_s; quat_w; mag_y; Acc_X; ax; accel_x [g]; accelerometer_z_mg; Accelerometer X (g)
 Acc Y [m/s²]; acc_ms2_x; gx; wz; Gyro X [°/s]; rotationRateX; angular_velocity.z; gyr_deg_s_y; q0; Quat_q3
-orientation.w; t; t_ms; Timestamp (us); Time [s]; PacketCounter; fs; linear_acceleration.x; FreeAcc_X; left_shank_gyro_z_dps
-LeftShankAccX; Left Shank Gyroscope X (deg/s); Acc_X_left_shank; left_ax; IMU1_GyroZ; Device_5E3A_Gyro_X_CAL
-data.left_shank.gyr"""
+orientation.w; t; t_ms; Timestamp (us); Time [s]; PacketCounter; fs; linear_acceleration.x; FreeAcc_X
+left_shank_gyro_z_dps; LeftShankAccX; Left Shank Gyroscope X (deg/s); Acc_X_left_shank; left_ax; IMU1_GyroZ
+Device_5E3A_Gyro_X_CAL; data.left_shank.gyr"""
 # acc_mag may be a magnitude, or a magnetometer
 SOMETHING_ELSE = "acc_mag; acc_norm; gyr_x_raw; SampleTimeFine; start_time; knee_angle; A_x; pressure; x; ; ()"
 

@@ -9,7 +9,7 @@ import pytest
 
 from devices.files import gathering
 from devices.files.gathering import gather
-from devices.files.limited_reader import LimitedReader, LimitedReading
+from devices.files.limited_reader import LimitedReading
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import SESSION
 
@@ -111,16 +111,14 @@ def test_what_is_damaged_is_refused_and_the_others_stay(mixed: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the limits of Linux")
-def test_a_link_to_what_nobody_chose_is_refused_by_the_reading_process(mixed: Path) -> None:
+def test_a_link_to_what_nobody_chose_is_refused_by_the_reading_process(
+    mixed: Path, shared_reading: LimitedReading
+) -> None:
     secret = mixed.parent / f"{mixed.name}-beside.csv"
     secret.write_text(APDM)
     folder = mixed / "more"
     (folder / "e.csv").symlink_to(secret)
-    reader = LimitedReader()
-    try:
-        found = LimitedReading(reader, lambda: None).gather([folder])
-    finally:
-        reader.close()
+    found = shared_reading.gather([folder])
     assert [one.name for one in found.trials if one.name != "e"] == ["d"]
     if "e" not in [one.name for one in found.trials]:  # without Landlock it is read
         assert [one.where for one in found.refused] == ["e.csv"]
@@ -134,12 +132,8 @@ def test_the_files_of_one_trial_are_those_of_its_name(test_data: FindData) -> No
 
 
 @pytest.mark.endurance
-def test_it_comes_back_the_same_from_the_limited_process(mixed: Path) -> None:
-    reader = LimitedReader()
-    try:
-        found = LimitedReading(reader, lambda: None).gather([mixed])
-    finally:
-        reader.close()
+def test_it_comes_back_the_same_from_the_limited_process(mixed: Path, shared_reading: LimitedReading) -> None:
+    found = shared_reading.gather([mixed])
     here = gather([mixed])
     assert found.trials == here.trials
     assert list(map(str, found.refused)) == list(map(str, here.refused))

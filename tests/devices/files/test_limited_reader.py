@@ -40,14 +40,6 @@ SPARSE_BYTES = 8_000_000_000
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="the limits of Linux")
 
 
-@pytest.fixture(scope="module")
-def shared() -> Iterator[LimitedReader]:
-    """One process for the tests that do not end it."""
-    reader = LimitedReader()
-    yield reader
-    reader.close()
-
-
 @pytest.fixture
 def reader() -> Iterator[LimitedReader]:
     reader = LimitedReader()
@@ -98,7 +90,9 @@ def sparse(path: Path) -> Path:
 # --- what comes back is what was read
 
 
-def test_a_session_comes_back_as_if_it_had_been_read_here(make_session: MakeSession, shared: LimitedReader) -> None:
+def test_a_session_comes_back_as_if_it_had_been_read_here(
+    make_session: MakeSession, shared_reader: LimitedReader
+) -> None:
     columns = {name: np.linspace(0, 1, 4) for name in REQUIRED} | {
         **{f"quat_{axis}": [0.5, 0.5, np.nan, 0.5] for axis in "wxyz"},
         **{f"mag_{axis}": [1.0, 2.0, 3.0, 4.0] for axis in "xyz"},
@@ -120,18 +114,18 @@ folder = "walk_1"
 """
     folder = make_session(toml=toml)
     pq.write_table(pa.table(columns), folder / "walk_1" / "left_shank.parquet")
-    direct, limited = read_session(folder), read(folder, shared)
+    direct, limited = read_session(folder), read(folder, shared_reader)
     assert len(direct.recordings[0].imu[Site.LEFT_SHANK].unknown) == 3
     assert repr(limited) == repr(direct)  # NaN is not equal to itself
     assert same(direct.recordings[0].imu, limited.recordings[0].imu)
     assert not same(direct.recordings[0].imu, {})
 
 
-def test_an_import_comes_back_as_if_it_had_been_read_here(tmp_path: Path, shared: LimitedReader) -> None:
+def test_an_import_comes_back_as_if_it_had_been_read_here(tmp_path: Path, shared_reader: LimitedReader) -> None:
     files = [exported(tmp_path), exported(tmp_path, "b.txt")]
     placement = {Site.LEFT_THIGH: "a.txt"}
     direct = import_with(mtmanager_trial, files, placement, "walk 1")
-    trial = LimitedReading(shared, nothing).read_trial("xsens-mtmanager", files, None)
+    trial = LimitedReading(shared_reader, nothing).read_trial("xsens-mtmanager", files, None)
     limited = place_trial(trial, placement, "walk 1")
     assert [finding.key for finding in limited.findings] == ["file_left_out"]
     assert same(direct, limited)
@@ -149,26 +143,26 @@ def test_an_import_comes_back_as_if_it_had_been_read_here(tmp_path: Path, shared
     ],
 )
 def test_a_refusal_comes_back_word_for_word(
-    make_session: MakeSession, shared: LimitedReader, spoilt: dict[str, object]
+    make_session: MakeSession, shared_reader: LimitedReader, spoilt: dict[str, object]
 ) -> None:
     folder = make_session(**spoilt)
     with pytest.raises(FileRefusedError) as direct:
         read_session(folder)
     with pytest.raises(FileRefusedError) as limited:
-        read(folder, shared)
+        read(folder, shared_reader)
     assert str(limited.value) == str(direct.value)
     assert limited.value.values == direct.value.values
     assert not isinstance(limited.value, ReadingEndedError)
 
 
 def test_a_large_session_is_read_again_by_the_limited_process(
-    make_session: MakeSession, shared: LimitedReader, monkeypatch: pytest.MonkeyPatch
+    make_session: MakeSession, shared_reader: LimitedReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("devices.files.session_folder.HELD_BYTES", 1)
     folder = make_session()
-    session = read_session(folder, LimitedReading(shared, nothing))
+    session = read_session(folder, LimitedReading(shared_reader, nothing))
     assert len(session.recordings[0].imu[Site.LEFT_THIGH]) == 3  # kept: it was read last
-    again = read_session(with_two_more(folder), LimitedReading(shared, nothing)).recordings[0].imu
+    again = read_session(with_two_more(folder), LimitedReading(shared_reader, nothing)).recordings[0].imu
     assert len(again[Site.LEFT_THIGH]) == 3
     (folder / "walk_1" / "left_thigh.csv").write_text("changed")
     assert len(again[Site.RIGHT_THIGH]) == len(again[Site.RIGHT_SHANK]) == 3
@@ -183,12 +177,12 @@ def with_two_more(folder: Path) -> Path:
 
 
 def test_what_a_folder_holds_is_looked_for_there_wherever_the_process_was_started(
-    make_session: MakeSession, shared: LimitedReader, monkeypatch: pytest.MonkeyPatch
+    make_session: MakeSession, shared_reader: LimitedReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = make_session()
-    read(folder, shared)
+    read(folder, shared_reader)
     monkeypatch.chdir(folder.parent)
-    assert repr(read(Path("session"), shared)) == repr(read_session(folder))
+    assert repr(read(Path("session"), shared_reader)) == repr(read_session(folder))
 
 
 # --- limits

@@ -13,7 +13,7 @@ from devices.files.clock_repair import MOST_RESTARTS, FileClock, repaired, resta
 from devices.files.file_format import FileFormat
 from devices.files.formats import FORMATS, read_trial
 from devices.files.imports import place_trial
-from devices.files.limited_reader import LimitedReader, LimitedReading
+from devices.files.limited_reader import LimitedReading
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ClockRestart, ImportedSensor, ImportedTrial
 from tests.clock_files import ALL, TIME_S, pair, restarted, table
@@ -53,15 +53,12 @@ def test_even_clocks_are_read_alike(tmp_path: Path) -> None:
         assert (one.findings, one.restarts) == (other.findings, ())
 
 
-def test_the_reading_process_delivers_the_restarts(tmp_path: Path) -> None:
+def test_the_reading_process_delivers_the_restarts(tmp_path: Path, shared_reading: LimitedReading) -> None:
     path = table(tmp_path, "left_thigh", restarted(9.0))
-    reader = LimitedReader()
-    reading = LimitedReading(reader, lambda: None)
-    (sensor,) = reading.read_trial("", [path], None, splits=True).sensors
+    (sensor,) = shared_reading.read_trial("", [path], None, splits=True).sensors
     assert [one.at for one in sensor.restarts] == [900]
     with pytest.raises(FileRefusedError, match=REFUSED):
-        reading.read_trial("", [path], None)
-    reader.close()
+        shared_reading.read_trial("", [path], None)
 
 
 def test_no_answer_may_have_a_restart_outside_of_its_samples() -> None:

@@ -2,7 +2,6 @@
 
 import random
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,16 +19,9 @@ from tests.safety.table_fuzz import stated_at_random, tables
 FEW = 5  # of each kind, in the default run; `python -m tests.safety.table_fuzz` reads thousands
 
 
-@pytest.fixture(scope="module")
-def reader() -> Iterator[LimitedReader]:
-    reader = LimitedReader()
-    yield reader
-    reader.close()
-
-
 @pytest.mark.parametrize("name", tables())
-def test_a_spoilt_table_is_previewed_and_read_or_refused(name: str, reader: LimitedReader) -> None:
-    found = fuzz(tables()[name], FEW, 7, reader)
+def test_a_spoilt_table_is_previewed_and_read_or_refused(name: str, shared_reader: LimitedReader) -> None:
+    found = fuzz(tables()[name], FEW, 7, shared_reader)
     assert found.faults == []
     assert found.count["read"] > 0
     assert found.count["refused"] > 0

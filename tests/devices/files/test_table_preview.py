@@ -13,7 +13,7 @@ from devices.files import table_layout
 from devices.files.answers import details_of, value_from
 from devices.files.formats import format_of, read_trial
 from devices.files.gathering import gather
-from devices.files.limited_reader import LimitedReader, LimitedReading
+from devices.files.limited_reader import LimitedReading
 from devices.files.refusal import FileRefusedError
 from devices.files.table_choices import NO_CHOICES, NONE, TableChoices, TablePreview, column_named
 from devices.files.table_layout import HEAD_BYTES, fingerprint_of
@@ -290,17 +290,12 @@ def test_a_column_is_called_by_its_name_before_its_number() -> None:
     ]
 
 
-def test_choices_and_previews_come_through_the_limited_process(tmp_path: Path) -> None:
-    reader = LimitedReader()
-    try:
-        reading = LimitedReading(reader, lambda: None)
-        path = table(tmp_path / "a.csv")
-        assert is_left(reading.preview(path, STATED))
-        assert reading.preview(path, replace(STATED, acc_unit="g")).refusal is not None
-        assert len(reading.read_trial("", [path], None, {"": STATED}).sensors) == 1
-        assert reading.gather([path], {fingerprint_of(path): STATED}).trials[0].format == "csv"
-    finally:
-        reader.close()
+def test_choices_and_previews_come_through_the_limited_process(tmp_path: Path, shared_reading: LimitedReading) -> None:
+    path = table(tmp_path / "a.csv")
+    assert is_left(shared_reading.preview(path, STATED))
+    assert shared_reading.preview(path, replace(STATED, acc_unit="g")).refusal is not None
+    assert len(shared_reading.read_trial("", [path], None, {"": STATED}).sensors) == 1
+    assert shared_reading.gather([path], {fingerprint_of(path): STATED}).trials[0].format == "csv"
 
 
 def test_choices_are_the_same_after_being_written_down() -> None:

@@ -1,7 +1,7 @@
 """Tests that videos of others are read in pieces by the limited process, and that bad ones are refused."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -25,18 +25,6 @@ from tests.trials_of_files import refused
 Edit = Callable[[bytes], bytes]
 
 
-@pytest.fixture(scope="module")
-def reader() -> Iterator[LimitedReader]:
-    reader = LimitedReader()
-    yield reader
-    reader.close()
-
-
-@pytest.fixture(scope="module")
-def reading(reader: LimitedReader) -> LimitedReading:
-    return LimitedReading(reader, lambda: None)
-
-
 def numbers_of(piece: VideoPiece) -> list[int]:
     """Which frame each is, by its brightness."""
     levels = np.array([level(number) for number in range(55)])
@@ -53,14 +41,14 @@ def refusal(reading: LimitedReading, path: Path) -> str:
     ("name", "codec"), [("a.mp4", "libx264"), ("b.mov", "libx265"), ("c.mkv", "mpeg4"), ("d.webm", "libvpx-vp9")]
 )
 def test_a_video_comes_in_pieces_each_frame_once_at_its_time(
-    reading: LimitedReading, tmp_path: Path, name: str, codec: str
+    shared_reading: LimitedReading, tmp_path: Path, name: str, codec: str
 ) -> None:
     path = write_video(tmp_path / name, 45, codec)
     numbers: list[int] = []
     times: list[float] = []
     from_s = 0.0
     while True:
-        piece = reading.read_video(path, from_s, 20)
+        piece = shared_reading.read_video(path, from_s, 20)
         numbers += numbers_of(piece)
         times += piece.time_s.tolist()
         assert not piece.is_damaged
@@ -75,15 +63,17 @@ def test_a_video_comes_in_pieces_each_frame_once_at_its_time(
     assert piece.length_s == pytest.approx(1.5, abs=0.05)
 
 
-def test_a_large_video_is_scaled_down_and_one_held_upright_is_upright(reading: LimitedReading, tmp_path: Path) -> None:
+def test_a_large_video_is_scaled_down_and_one_held_upright_is_upright(
+    shared_reading: LimitedReading, tmp_path: Path
+) -> None:
     path = write_video(tmp_path / "a.mp4", 3, size=(1920, 1080))
-    piece = reading.read_video(path, 0.0)
+    piece = shared_reading.read_video(path, 0.0)
     assert (piece.width, piece.height) == (1280, 720)
     assert grey_of(piece.jpegs[0]).shape == (720, 1280)
     corners = {}
     for turns in (1, 2, 3):
         (tmp_path / "b.mp4").write_bytes(rotated(path.read_bytes(), turns))
-        piece = reading.read_video(tmp_path / "b.mp4", 0.0)
+        piece = shared_reading.read_video(tmp_path / "b.mp4", 0.0)
         grey = grey_of(piece.jpegs[0])
         assert grey.shape == (piece.height, piece.width) == ((720, 1280) if turns == 2 else (1280, 720))
         places = {(y, x): int(grey[y, x]) for y in (5, -5) for x in (5, -5)}
@@ -92,24 +82,24 @@ def test_a_large_video_is_scaled_down_and_one_held_upright_is_upright(reading: L
     assert corners == {1: (5, -5), 2: (-5, -5), 3: (-5, 5)}
 
 
-def test_a_video_that_breaks_off_gives_what_is_whole(reading: LimitedReading, tmp_path: Path) -> None:
+def test_a_video_that_breaks_off_gives_what_is_whole(shared_reading: LimitedReading, tmp_path: Path) -> None:
     content = write_video(tmp_path / "a.mp4", 120, options=FASTSTART).read_bytes()
     (tmp_path / "cut.mp4").write_bytes(content[: len(content) * 2 // 3])
-    piece = reading.read_video(tmp_path / "cut.mp4", 0.0)
+    piece = shared_reading.read_video(tmp_path / "cut.mp4", 0.0)
     assert piece.is_end
     assert piece.is_damaged
     assert 20 < len(piece.jpegs) < 110
     assert piece.length_s == pytest.approx(4.0, abs=0.05)
     assert numbers_of(piece) == [number % 55 for number in range(len(piece.jpegs))]
-    whole = reading.read_video(tmp_path / "a.mp4", 0.0)
+    whole = shared_reading.read_video(tmp_path / "a.mp4", 0.0)
     assert (len(whole.jpegs), whole.is_end, whole.is_damaged) == (120, True, False)
 
 
 @pytest.mark.parametrize("name", ["a.mkv", "b.mp4"])
 def test_sound_that_goes_on_after_the_pictures_damages_nothing(
-    reading: LimitedReading, tmp_path: Path, name: str
+    shared_reading: LimitedReading, tmp_path: Path, name: str
 ) -> None:
-    piece = reading.read_video(write_video(tmp_path / name, 45, sound_s=4.5), 0.0)
+    piece = shared_reading.read_video(write_video(tmp_path / name, 45, sound_s=4.5), 0.0)
     assert (len(piece.jpegs), piece.is_end, piece.is_damaged) == (45, True, False)
 
 
@@ -130,24 +120,24 @@ UNUSABLE: dict[str, Edit] = {
 
 
 def test_what_is_no_usable_video_is_refused(
-    reading: LimitedReading, tmp_path: Path, snapshot: SnapshotAssertion
+    shared_reading: LimitedReading, tmp_path: Path, snapshot: SnapshotAssertion
 ) -> None:
     content = write_video(tmp_path / "a.mp4").read_bytes()
     found = {}
     for case, edit in UNUSABLE.items():
         (tmp_path / "bad.mp4").write_bytes(edit(content))
-        found[case] = refusal(reading, tmp_path / "bad.mp4")
-        assert len(reading.read_video(tmp_path / "a.mp4", 0.0).jpegs) == 45
+        found[case] = refusal(shared_reading, tmp_path / "bad.mp4")
+        assert len(shared_reading.read_video(tmp_path / "a.mp4", 0.0).jpegs) == 45
     assert found == snapshot
 
 
-def test_a_video_of_an_hour_is_refused(reading: LimitedReading, tmp_path: Path) -> None:
+def test_a_video_of_an_hour_is_refused(shared_reading: LimitedReading, tmp_path: Path) -> None:
     path = write_video(tmp_path / "a.mp4", 4, rate=Fraction(1, 900))
     stated = "this video is longer than 30 minutes. Cut the part with the walk out of it and import that."
-    assert stated in refusal(reading, path)
+    assert stated in refusal(shared_reading, path)
 
 
-def test_a_file_with_sound_alone_is_refused(reading: LimitedReading, tmp_path: Path) -> None:
+def test_a_file_with_sound_alone_is_refused(shared_reading: LimitedReading, tmp_path: Path) -> None:
     with av.open(str(tmp_path / "a.mp4"), "w") as container:
         stream = container.add_stream("aac", rate=44100)
         assert isinstance(stream, AudioStream)
@@ -156,15 +146,15 @@ def test_a_file_with_sound_alone_is_refused(reading: LimitedReading, tmp_path: P
         sound.sample_rate = 44100
         container.mux(stream.encode(sound))
         container.mux(stream.encode(None))
-    assert "this file has no pictures. Choose a video." in refusal(reading, tmp_path / "a.mp4")
+    assert "this file has no pictures. Choose a video." in refusal(shared_reading, tmp_path / "a.mp4")
 
 
 def test_a_video_that_is_too_large_is_refused_before_it_is_opened(
-    reading: LimitedReading, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    shared_reading: LimitedReading, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = write_video(tmp_path / "a.mp4")
     monkeypatch.setattr(limited_reader, "MOST_VIDEO_BYTES", 1000)
-    assert "more than a recording should need" in refusal(reading, path)
+    assert "more than a recording should need" in refusal(shared_reading, path)
     assert video_file.MOST_VIDEO_BYTES == 4_000_000_000
 
 
@@ -226,8 +216,8 @@ def test_a_piece_of_another_shape_is_no_answer(broken: VideoPiece) -> None:
 
 
 @pytest.mark.parametrize("name", videos())
-def test_a_spoilt_video_is_read_or_refused(name: str, reader: LimitedReader) -> None:
-    found = fuzz(videos()[name], 8, 3, reader)
+def test_a_spoilt_video_is_read_or_refused(name: str, shared_reader: LimitedReader) -> None:
+    found = fuzz(videos()[name], 8, 3, shared_reader)
     assert found.faults == []
     assert found.count["read"] > 0
     assert found.count["refused"] > 0

@@ -6,7 +6,7 @@ C3D by the library that reads them elsewhere, too.
 
 import re
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import ezc3d
@@ -16,7 +16,7 @@ from syrupy.assertion import SnapshotAssertion
 
 from core.body import Joint, Side
 from devices.files.answers import Array, BrokenAnswerError, details_of
-from devices.files.limited_reader import LimitedReader, LimitedReading
+from devices.files.limited_reader import LimitedReading
 from devices.files.references.answers import reference_from
 from devices.files.references.markers import angles_of_markers, landmark_of
 from devices.files.references.reading import read_reference
@@ -29,15 +29,8 @@ TIME_S = np.arange(0, 60) / 100.0
 KNEE_DEG, ANKLE_DEG = 20 + 15 * np.sin(9 * TIME_S), 5 * np.cos(7 * TIME_S)
 
 
-@pytest.fixture(scope="module")
-def limited() -> Iterator[LimitedReading]:
-    reader = LimitedReader()
-    yield LimitedReading(reader, lambda: None)
-    reader.close()
-
-
 @pytest.fixture
-def read(tmp_path: Path, limited: LimitedReading) -> Read:
+def read(tmp_path: Path, shared_reading: LimitedReading) -> Read:
     """Read a content under a name that gives nothing: here, and by the process, which states the same."""
 
     def of(content: str | bytes) -> ReferenceFile:
@@ -47,9 +40,9 @@ def read(tmp_path: Path, limited: LimitedReading) -> Read:
             here = read_reference(path)
         except FileRefusedError as problem:
             with pytest.raises(FileRefusedError, match=f"^{re.escape(str(problem))}$"):
-                limited.read_reference(path)
+                shared_reading.read_reference(path)
             raise
-        found = limited.read_reference(path)
+        found = shared_reading.read_reference(path)
         assert (found.format, found.source) == (here.format, here.source)
         for trial, same in zip(found.trials, here.trials, strict=True):
             assert set(trial.angles) == set(same.angles)
