@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from devices.files.formats import FORMATS, recognised
-from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, PROOFS
+from tests.trials_of_files import refused
 
 FindData = Callable[[str], Path]
 MT = "// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n"
@@ -45,19 +45,15 @@ def test_movella_dot_is_reported_from_mt_manager_by_more_than_its_columns(tmp_pa
     assert recognised([put(tmp_path / "c.csv", f"// Update Rate: 100.0Hz\n{columns}")]) == "xsens-mtmanager"
 
 
-def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(
-        FileRefusedError, match=r"a.csv: the file format is not recognised, and the file is no table of numbers"
-    ):
-        recognised([put(tmp_path / "a.csv", "time,left,right\n")])
+def test_what_is_not_known_is_refused(tmp_path: Path, snapshot: SnapshotAssertion) -> None:
+    def of(*texts: str) -> str:
+        return refused(recognised, [put(tmp_path / f"{number}.csv", text) for number, text in enumerate(texts)])
+
     bare = "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n1,16667,0,0,9.8,0,0,0\n"
-    with pytest.raises(
-        FileRefusedError, match="the file format is not recognised"
-    ):  # of MT Manager in rad/s, or of Movella DOT in deg/s
-        recognised([put(tmp_path / "bare.csv", bare)])
-    with pytest.raises(FileRefusedError, match="the file format is not recognised"):
-        recognised([put(tmp_path / "b.csv", "")])
-    with pytest.raises(FileRefusedError, match=r"b.txt: this file comes from apdm, but a.txt from xsens-mtmanager"):
-        recognised([put(tmp_path / "a.txt", MT), put(tmp_path / "b.txt", APDM)])
-    with pytest.raises(FileRefusedError, match="this file does not exist"):
-        recognised([tmp_path / "none.csv"])
+    assert {
+        "other columns": of("time,left,right\n"),
+        "of MT Manager in rad/s, or of Movella DOT in deg/s": of(bare),
+        "nothing": of(""),
+        "of two programs": of(MT, APDM),
+    } == snapshot
+    assert "this file does not exist" in refused(recognised, [tmp_path / "none.csv"])

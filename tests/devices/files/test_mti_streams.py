@@ -7,15 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from syrupy.assertion import SnapshotAssertion
 
 from core.samples import RateKind
 from devices.drivers.xbus import Item, Mid, item, message
 from devices.files.formats import format_of
 from devices.files.mti_streams import mti_trial
-from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
 from tests.devices.drivers.test_xsens_mti import golden_items, golden_numbers
 from tests.swinging_sensor import swinging_sensor
+from tests.trials_of_files import refused
 
 Find = Callable[[str], Path]
 HZ, COUNT = 100.0, 400
@@ -165,41 +166,23 @@ def test_rate_and_acceleration_at_unequal_rates_keep_the_slower_one_and_say_so(
         assert finding.numbers == {"kept": kept, "count": COUNT - kept}
 
 
-@pytest.mark.parametrize("scale", [1 / 9.81, 9.81])
-def test_what_weighs_no_gravity_is_refused(tmp_path: Path, scale: float) -> None:
-    path = written(tmp_path / "a.bin", kinds=frozenset({Item.RATE, Item.ACCELERATION}), scale=scale)
-    with pytest.raises(
-        FileRefusedError,
-        match=r'a\.bin: the median acceleration of "0123ABCD" is .*, which does not match gravity .* Check the sensor',
-    ):
-        one(path)
-
-
-def test_without_a_time_the_rate_is_asked_for(tmp_path: Path) -> None:
-    path = written(tmp_path / "a.bin", kinds=frozenset({Item.RATE, Item.ACCELERATION}), ticks=False)
-    with pytest.raises(FileRefusedError, match="not every message has a time") as refused:
-        mti_trial([path])
-    assert "samples per second" in refused.value.remedy
-
-
-def test_what_shows_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> None:
-    silent = written(tmp_path / "a.bin", kinds=frozenset())
-    assert format_of(silent) == "xsens-mti"
-    with pytest.raises(
-        FileRefusedError, match="the file contains no rate of turn, acceleration or orientation"
-    ) as refused:
-        mti_trial([silent])
-    assert "MT Manager, Output Configuration" in refused.value.remedy
+def test_what_shows_no_motion_no_gravity_or_no_time_is_refused_with_what_to_set(
+    tmp_path: Path, snapshot: SnapshotAssertion
+) -> None:
+    path, both = tmp_path / "a.bin", frozenset({Item.RATE, Item.ACCELERATION})
+    silent = refused(mti_trial, [written(path, kinds=frozenset())])
+    assert format_of(path) == "xsens-mti"
     old = tmp_path / "old.bin"
     old.write_bytes(message(0x32, bytes(50)) * 20)
     assert format_of(old) == "xsens-mti"
-    with pytest.raises(
-        FileRefusedError, match="the file's messages are of the older type MTData, which does not describe its content"
-    ):
-        mti_trial([old])
-    blind = written(tmp_path / "b.bin", kinds=frozenset({Item.RATE, FREE}))
-    with pytest.raises(FileRefusedError, match=r"b\.bin: the acceleration in the file is without gravity"):
-        mti_trial([blind])
+    assert {
+        "force in g": refused(mti_trial, [written(path, kinds=both, scale=1 / 9.81)]),
+        "force ten times as large": refused(mti_trial, [written(path, kinds=both, scale=9.81)]),
+        "no time": refused(mti_trial, [written(path, kinds=both, ticks=False)]),
+        "no motion": silent,
+        "older messages": refused(mti_trial, [old]),
+        "no gravity": refused(mti_trial, [written(path, kinds=frozenset({Item.RATE, FREE}))]),
+    } == snapshot
 
 
 def test_damage_is_passed_over_and_reported(tmp_path: Path) -> None:

@@ -3,14 +3,12 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
-
 from core.body import Site
 from devices.files.formats import read_trial
 from devices.files.gathering import gather
 from devices.files.imports import mapped_sites, place_trial
-from devices.files.refusal import FileRefusedError
 from devices.files.sensor_mapping import read_mapping
+from tests.trials_of_files import refused
 
 FindData = Callable[[str], Path]
 FOLDER, MAPPING = "vendor_exports/xsens_mtmanager", "OpenSenseExample_myIMUMappings.xml"
@@ -44,8 +42,7 @@ def test_a_mapping_goes_with_the_trial_that_it_names(test_data: FindData) -> Non
     assert "OpenSenseExample_MT_012005D6_009_001" in with_it
     assert "MT46_01_000" not in with_it  # of other sensors
     assert not any(MAPPING in str(refusal) for refusal in found.refused)
-    with pytest.raises(FileRefusedError, match="the file names sensors and holds no recording"):
-        gather([test_data(FOLDER) / MAPPING])
+    assert "the file names sensors and holds no recording" in refused(gather, [test_data(FOLDER) / MAPPING])
 
 
 def test_the_mapping_of_apdm_is_one_too(tmp_path: Path) -> None:
@@ -54,21 +51,16 @@ def test_the_mapping_of_apdm_is_one_too(tmp_path: Path) -> None:
 
 
 def test_what_is_no_mapping_is_refused(tmp_path: Path) -> None:
-    def refusal(path: Path) -> str:
-        with pytest.raises(FileRefusedError) as refused:
-            read_mapping(path)
-        return str(refused.value)
-
     path = tmp_path / "a.xml"
-    assert 'assigns "tibia_l_imu" twice' in refusal(mapping(path, ("A", "tibia_l_imu"), ("B", "tibia_l_imu")))
-    assert "the file names no sensors" in refusal(mapping(path))
+    twice = refused(read_mapping, mapping(path, ("A", "tibia_l_imu"), ("B", "tibia_l_imu")))
+    assert 'assigns "tibia_l_imu" twice' in twice
+    assert "the file names no sensors" in refused(read_mapping, mapping(path))
     path.write_text(mapping(path, ("A", "tibia_l_imu")).read_text()[:-30])
-    assert "the file is not a complete XML file" in refusal(path)
+    assert "the file is not a complete XML file" in refused(read_mapping, path)
 
 
 def test_a_mapping_without_legs_places_nothing(test_data: FindData, tmp_path: Path) -> None:
     (file,) = test_data(FOLDER).glob("OpenSenseExample_*00B421E6.txt")
     trial = read_trial("", [file, mapping(tmp_path / "a.xml", ("_00B421E6", "hand_l_imu"))], None)
     assert [one.name for one in trial.sensors] == ["hand_l_imu"]
-    with pytest.raises(FileRefusedError, match="the mapping file names no part of a leg: hand_l_imu"):
-        mapped_sites(trial)
+    assert "the mapping file names no part of a leg: hand_l_imu" in refused(mapped_sites, trial)
