@@ -28,6 +28,7 @@ from devices.emulators.dot_faults import DotFaults
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.wizard.dressed_patient import Worn, dressed_patient
+from tests.app.wizard.present import present
 from tests.devices.dot.fast_radio import FastRadio
 from tests.simulated import session_of
 
@@ -61,6 +62,12 @@ def controller(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterato
         controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     yield controller
     controller.finish()
+
+
+@pytest.fixture
+def library(controller: LibraryController) -> Library:
+    """What the controller has open."""
+    return present(controller.state).library.library
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 import json
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID, uuid4
@@ -16,13 +16,16 @@ from pytestqt.qtbot import QtBot
 from app.editing.confirmation import is_confirmed
 from app.exports.proposed_names import free_name, session_name
 from app.reports.patient.document import ReportPreview
+from app.storage.audit import about
 from app.storage.exchange import import_session
+from app.storage.library import Library
 from app.storage.operators import CLINIC
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import Action, LibraryError
 from app.summary.request import ReportRequest
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.report import writing
 from app.wizard.report.comment_editor import CommentState
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.printing import PRINTED_PPI
@@ -34,13 +37,38 @@ from core.results import Analysis
 from core.session import RecordingKind, Session
 from tests.app.drawn_clips import drawn_clip
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
+from tests.app.wizard.report.test_page import png
 from tests.simulated import analysis_of
 
 
 @pytest.fixture(scope="module")
 def analysis(simulated_session: Session) -> Analysis:
     return analysis_of(simulated_session)
+
+
+@pytest.fixture
+def blank_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages and a draft at once, where a test is about neither: to set them takes half a second."""
+    blank = [png(40.0)] * 4
+    monkeypatch.setattr(ReportPreview, "pages", lambda *_: blank)
+    monkeypatch.setattr(ReportPreview, "comment_draft", lambda *_: "The left knee flexes 54°.")
+
+
+@pytest.fixture
+def blank_documents(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same of the files: a report without a page, a workbook without a sheet."""
+    monkeypatch.setattr(writing, "make_report", lambda *_: b"%PDF-")
+    monkeypatch.setattr(writing, "workbook", lambda *_: b"")
+
+
+@pytest.fixture
+def reported(step: ReportStep) -> list[tuple[str, str]]:
+    """What the step states above its page, from now on."""
+    stated: list[tuple[str, str]] = []
+    step.reported.connect(lambda what, remedy: stated.append((what, remedy)))
+    return stated
 
 
 @pytest.fixture
@@ -74,21 +102,20 @@ def step(
     step.leave()
 
 
-def test_pages_are_shown_and_made_again_with_the_words(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
+def test_pages_are_shown_and_made_again_with_the_words(
+    qtbot: QtBot, step: ReportStep, visit: Visit, library: Library
+) -> None:
     sheets = step.page.report.sheets
     qtbot.waitUntil(lambda: sheets.count >= 4)
     step.page.report.comment.setPlainText("Keep alignment C.")
     step.leave()
     assert step.comment == "Keep alignment C."
-    state, session = visit.controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    sessions, session_id = state.library.library.sessions, session.id
-    qtbot.waitUntil(lambda: sessions.get(session_id).comment == "Keep alignment C.")
+    session_id = present(visit.session).id
+    qtbot.waitUntil(lambda: library.sessions.get(session_id).comment == "Keep alignment C.")
 
 
 def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_with_who_confirmed_it(
-    qtbot: QtBot, step: ReportStep, visit: Visit
+    qtbot: QtBot, step: ReportStep, visit: Visit, library: Library
 ) -> None:
     editor = step.page.report.editor
     qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT)
@@ -98,18 +125,16 @@ def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_wit
     assert "printed once you confirm it." in editor.note.text()
     editor.button.click()
     assert editor.state is CommentState.CONFIRMED
-    state, session = visit.controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    by = state.operator.name
+    by = present(visit.controller.state).operator.name
     assert by
     assert (request_of(step).comment, request_of(step).comment_by) == (draft, by)
     assert editor.note.text() == f"Confirmed by {by}. Printed on page one."
-    sessions, session_id = state.library.library.sessions, session.id
-    qtbot.waitUntil(lambda: sessions.get(session_id).comment == draft)
-    assert is_confirmed(draft, sessions.get(session_id).comment_confirmed)
+    session_id = present(visit.session).id
+    qtbot.waitUntil(lambda: library.sessions.get(session_id).comment == draft)
+    assert is_confirmed(draft, library.sessions.get(session_id).comment_confirmed)
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_words_changed_after_they_were_confirmed_are_not_printed_until_they_are_again(
     qtbot: QtBot, step: ReportStep
 ) -> None:
@@ -128,6 +153,7 @@ def test_words_changed_after_they_were_confirmed_are_not_printed_until_they_are_
     assert request_of(step).comment == "Keep alignment C. Pain."
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot: QtBot, step: ReportStep) -> None:
     editor = step.page.report.editor
     qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT)
@@ -137,6 +163,7 @@ def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot:
     assert (editor.words, editor.state) == ("", CommentState.EMPTY)
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_a_confirmation_that_the_library_refuses_prints_nothing(
     qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -151,56 +178,47 @@ def test_a_confirmation_that_the_library_refuses_prints_nothing(
 
 
 def request_of(step: ReportStep) -> ReportRequest:
-    request = step.request()
-    assert request is not None
-    return request
+    return present(step.request())
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_save_report_writes_one_pdf_and_nothing_beside_it(
-    qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
+    qtbot: QtBot, step: ReportStep, visit: Visit, library: Library, tmp_path: Path
 ) -> None:
     press(step, "Save report")
-    assert step.dialog is not None
-    assert [Path(path).name for path in step.dialog.selectedFiles()] == [report_name(visit)]
-    step.dialog.close()
+    assert proposed(step) == [report_name(visit)]
     out = tmp_path / "report.pdf"
-    save: Callable[[str], None] = step.save_report
-    save(str(out))
+    step.save_report(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE)
     assert [file.name for file in tmp_path.iterdir() if file.name != "library"] == ["report.pdf"]
     assert out.read_bytes().startswith(b"%PDF-")
-    state, session = visit.controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    assert state.library.library.audit.entries(f"session:{session.id}")[-1].action == Action.EXPORT
-    assert session.id in state.library.library.audit.reported([session.id])
+    session_id = present(visit.session).id
+    assert library.audit.entries(about("session", session_id))[-1].action == Action.EXPORT
+    assert session_id in library.audit.reported([session_id])
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_a_report_replaces_no_other_file_and_is_not_written_into_the_library(
-    qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
+    qtbot: QtBot, step: ReportStep, visit: Visit, reported: list[tuple[str, str]], tmp_path: Path
 ) -> None:
-    state = visit.controller.state
-    assert state is not None
+    folder = present(visit.controller.state).library.folder
     other = tmp_path / "notes.pdf"
     other.write_text("no PDF")
-    reported: list[str] = []
-    step.reported.connect(lambda what, _remedy: reported.append(what))
-    save: Callable[[str], None] = step.save_report
-    for out in (other, state.library.folder / "report.pdf"):
+    for out in (other, folder / "report.pdf"):
         with qtbot.waitSignal(step.reported):
-            save(str(out))
-    assert reported == ["This already exists and is not a PDF.", "This lies inside the library."]
+            step.save_report(str(out))
+    assert [what for what, _ in reported] == ["This already exists and is not a PDF.", "This lies inside the library."]
     assert other.read_text() == "no PDF"
-    assert not (state.library.folder / "report.pdf").exists()
+    assert not (folder / "report.pdf").exists()
     assert step.state is StepState.TODO
 
 
+@pytest.mark.usefixtures("blank_pages", "blank_documents")
 def test_the_letter_is_exported_where_it_was_chosen(
     qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
 ) -> None:
-    chosen: Callable[[str], None] = step.save_in
     step.page.report.formats.choose(["letter"])
-    chosen(str(tmp_path / "results"))
+    step.save_in(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.exported is not None)
     name = report_name(visit).removesuffix(".pdf")
     assert {file.name for file in (tmp_path / "results").iterdir()} == {
@@ -210,8 +228,9 @@ def test_the_letter_is_exported_where_it_was_chosen(
     assert "Your walking" in text
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
-    qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: ReportStep, visit: Visit, library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     drawn: list[tuple[str, float]] = []
 
@@ -219,7 +238,7 @@ def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
         drawn.append((language, ppi))
         return []
 
-    monkeypatch.setattr("app.wizard.report.writing.letter_pages", pages)
+    monkeypatch.setattr(writing, "letter_pages", pages)
     asked: list[str] = []
     monkeypatch.setattr(step.letter_printer, "ask", lambda name, _paper: asked.append(name))
     step.page.report.language.choose("de")
@@ -228,26 +247,35 @@ def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
     step.letter_printer.confirmed.emit()
     qtbot.waitUntil(lambda: bool(drawn))
     assert drawn == [("de", PRINTED_PPI)]
-    state, session = visit.controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    noted = state.library.library.audit.entries(f"session:{session.id}")[-1]
+    noted = library.audit.entries(about("session", present(visit.session).id))[-1]
     assert (noted.action, json.loads(noted.details)["format"]) == (Action.PRINT, "letter")
 
 
 def report_name(visit: Visit) -> str:
     """By the patient's code and the day."""
-    assert visit.session is not None
-    return f"{session_name(visit.session.details.patient.code, visit.session.details.started)}.pdf"
+    details = present(visit.session).details
+    return f"{session_name(details.patient.code, details.started)}.pdf"
 
 
-def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path) -> None:
+def proposed(step: ReportStep) -> list[str]:
+    """What the dialog that is open proposes, which is then closed."""
+    dialog = present(step.dialog)
+    dialog.close()
+    return [Path(path).name for path in dialog.selectedFiles()]
+
+
+@pytest.mark.usefixtures("blank_pages")
+def test_the_chosen_files_are_saved(
+    qtbot: QtBot,
+    step: ReportStep,
+    visit: Visit,
+    reported: list[tuple[str, str]],
+    tmp_path: Path,
+    request: pytest.FixtureRequest,
+) -> None:
     out = tmp_path / "results"
-    reported: list[tuple[str, str]] = []
-    step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
     step.page.report.formats.choose(["csv"])
-    chosen: Callable[[str], None] = step.save_in
-    chosen(str(out))
+    step.save_in(str(out))
     qtbot.waitUntil(lambda: step.exported is not None)
     assert reported == [("", "")]
     assert [file.name for file in out.glob("*.pdf")] == [report_name(visit)]
@@ -255,40 +283,39 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
     assert step.bar().note == "Saved as results."
-    save: Callable[[str], None] = step.save_report
-    save(str(tmp_path / "first.pdf"))
+    request.getfixturevalue("blank_documents")
+    step.save_report(str(tmp_path / "first.pdf"))
     qtbot.waitUntil(lambda: step.saved is not None)
     assert step.bar().note == "Saved as first.pdf."
-    chosen(str(tmp_path / "more"))
+    step.save_in(str(tmp_path / "more"))
     qtbot.waitUntil(lambda: step.exported == tmp_path / "more")
     assert step.bar().note == "Saved as more."
 
 
+@pytest.mark.usefixtures("blank_pages", "blank_documents")
 def test_a_file_that_was_not_written_is_named_with_its_reason(
-    qtbot: QtBot, step: ReportStep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot,
+    step: ReportStep,
+    reported: list[tuple[str, str]],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     lines = ["walk 1, mot: No angle of it can be given as a pose."]
-    monkeypatch.setattr("app.wizard.report.writing.export_from_library", lambda *_, **__: lines)
-    reported: list[tuple[str, str]] = []
-    step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
+    monkeypatch.setattr(writing, "export_from_library", lambda *_, **__: lines)
     step.page.report.formats.choose(["mot"])
-    chosen: Callable[[str], None] = step.save_in
-    chosen(str(tmp_path / "results"))
+    step.save_in(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.exported is not None)
     assert reported == [("Not every file was written.", lines[0])]
 
 
 def test_what_is_printed_is_in_the_audit_before_a_page_is_made(
-    qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: ReportStep, visit: Visit, library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    state, session = visit.controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    noted: list[list[str]] = []
+    subject, noted = about("session", present(visit.session).id), list[list[str]]()
 
     def pages(_preview: ReportPreview, _request: object, ppi: float) -> list[bytes]:
         if ppi == PRINTED_PPI:  # else for the look before
-            noted.append([entry.action for entry in state.library.library.audit.entries(f"session:{session.id}")])
+            noted.append([entry.action for entry in library.audit.entries(subject)])
         return []
 
     monkeypatch.setattr(ReportPreview, "pages", pages)
@@ -301,22 +328,17 @@ def test_what_is_printed_is_in_the_audit_before_a_page_is_made(
 def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
     """What is asked before files without a name are saved."""
     qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is not None)
-    dialog = step.page.findChild(LeavingDialog)
-    assert isinstance(dialog, LeavingDialog)
-    return dialog
+    return present(step.page.findChild(LeavingDialog))
 
 
 @pytest.mark.endurance
 def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_is_ticked(
-    qtbot: QtBot, step: ReportStep, visit: Visit, simulated_session: Session, tmp_path: Path
+    qtbot: QtBot, step: ReportStep, visit: Visit, library: Library, simulated_session: Session, tmp_path: Path
 ) -> None:
-    state, session = visit.controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    library = state.library.library
-    patients, patient = library.patients, library.patients.get(session.patient_id)
+    opened = present(visit.controller.state).library
+    patients, patient = library.patients, library.patients.get(present(visit.session).patient_id)
     reported = replace(simulated_session, started="2026-11-20T10:00:00+00:00")
-    imported = import_session(state.library, reported, lambda _share, _what: None, patient.details.code)
+    imported = import_session(opened, reported, lambda _share, _what: None, patient.details.code)
     visit.record.resume(library.sessions.get(imported.session_id))
     patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
@@ -331,11 +353,9 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert dict(dialog.shown)["device"] == "Qx1 knee"
     dialog.go.click()
     qtbot.waitUntil(lambda: step.dialog is not None)
-    assert step.dialog is not None
-    step.dialog.close()
+    present(step.dialog).close()
     out = tmp_path / "results"
-    chosen: Callable[[str], None] = step.save_in
-    chosen(str(out))
+    step.save_in(str(out))
     qtbot.waitUntil(lambda: step.exported is not None)
     with zipfile.ZipFile(out / "gaitwright.xlsx") as book:
         stated = b"".join(book.read(name) for name in book.namelist()).decode()
@@ -345,29 +365,26 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert patient.details.code not in stated.replace(shown["patient"], "")  # which begins as the code does
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
     press(step, "Export data")
-    assert step.dialog is not None
+    assert proposed(step) == [report_name(visit).removesuffix(".pdf")]
     assert step.page.findChild(LeavingDialog) is None
-    assert visit.session is not None
-    reported = visit.session.details
-    assert [Path(path).name for path in step.dialog.selectedFiles()] == [
-        session_name(reported.patient.code, reported.started)
-    ]
-    step.dialog.close()
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Visit, analysis: Analysis) -> None:
-    assert step.bar().primary.is_enabled  # type: ignore[union-attr]  # it is always there
+    assert present(step.bar().primary).is_enabled
     moved = tuple(one for one in analysis.recordings if one.kind is RecordingKind.FREE_MOTION)
     assert moved
     visit.evaluation.analysis = replace(analysis, recordings=moved)
     step._show()
-    assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # it is always there
+    assert not present(step.bar().primary).is_enabled
     assert step.page.currentWidget() is step.page.sentence
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     step.page.report.formats.choose(["fhir"])
     press(step, "Export data")
@@ -386,12 +403,9 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     step: ReportStep,
     tmp_path: Path,
 ) -> None:
-    state, session = controller.state, visit.session
-    assert state is not None
-    assert session is not None
-    code = session.details.patient.code
+    code = present(visit.session).details.patient.code
     earlier = replace(simulated_session, started="2020-03-01T10:00:00+00:00")
-    opened, silent = state.library, lambda _share, _what: None
+    opened, silent = present(controller.state).library, lambda _share, _what: None
     earlier_id = import_session(opened, earlier, silent, code).session_id
     opened.library.settings.put(CLINIC, "Clinic North")
     step.enter()
@@ -401,10 +415,9 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     report.earlier.setCurrentIndex(1)
     report.earlier.activated.emit(1)
     assert report.chosen_visit == earlier_id
-    assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # nothing is saved yet, so it is there
-    qtbot.waitUntil(lambda: step.bar().primary.is_enabled)  # type: ignore[union-attr]  # it is still there
-    chosen: Callable[[str], None] = step.save_in
-    chosen(str(tmp_path / "results"))
+    assert not present(step.bar().primary).is_enabled
+    qtbot.waitUntil(lambda: present(step.bar().primary).is_enabled)
+    step.save_in(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.exported is not None)
     text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / report_name(visit)).pages)
     assert "Comparison of visits" in text
@@ -415,11 +428,11 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     assert first.startswith("2,")
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
-    qtbot: QtBot, step: ReportStep, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: ReportStep, reported: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sheets, reported = step.page.report.sheets, []
-    step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
+    sheets = step.page.report.sheets
     qtbot.waitUntil(lambda: sheets.count >= 4)
 
     def fail(*_: object) -> None:
@@ -436,15 +449,15 @@ def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
     assert reported[-1] == ("", "")
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparison_and_nothing_to_save(
-    qtbot: QtBot, step: ReportStep, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: ReportStep, reported: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
         raise LibraryError("the visit cannot be read", "Choose another")
 
     monkeypatch.setattr("app.wizard.report.step.read_analysed", refuse)
-    report, reported = step.page.report, []
-    step.reported.connect(lambda what, _remedy: reported.append(what))
+    report = step.page.report
     qtbot.waitUntil(lambda: report.sheets.count >= 4)
     report.show_visits([(uuid4(), "1 Jul 2026")])
     report.earlier.setCurrentIndex(1)
@@ -463,8 +476,7 @@ def test_ctrl_s_saves_as_its_cap_states(qtbot: QtBot, visit: Visit, monkeypatch:
     qtbot.addWidget(step.page)
     pressed = []
     monkeypatch.setattr(step, "_save", lambda: pressed.append("save"))
-    primary = step.bar().primary
-    assert primary is not None
+    primary = present(step.bar().primary)
     assert primary.key == "Ctrl S"
     primary.run()
     assert step.on_intent(Intent(KeyAction.SAVE))
@@ -499,39 +511,32 @@ def test_a_second_session_of_a_day_is_proposed_a_folder_of_its_own(tmp_path: Pat
     assert free_name(tmp_path, "P-1_2026-11-23") == "P-1_2026-11-23_3"
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_pictures_of_the_video_are_in_the_report_only_where_somebody_chose_them(
     qtbot: QtBot, step: ReportStep, visit: Visit, analysis: Analysis
 ) -> None:
     report = step.page.report
     assert not report.video.isVisible()
-    request = step.request()
-    assert request is not None
-    walk = next(one for one in analysis.recordings if one.name == request.walks[-1])
+    walk = next(one for one in analysis.recordings if one.name == request_of(step).walks[-1])
     clip = drawn_clip(walk, size=(320, 180))
     visit.clips.opened.emit((replace(clip, sync=None),))
     assert not report.video.isVisible()  # nobody knows which moment a frame is of
     visit.clips.opened.emit((clip,))
     assert report.video.isVisible()
-    request = step.request()
-    assert request is not None
-    assert request.key_frames == ()
+    assert request_of(step).key_frames == ()
     report.video.click()
-    request = step.request()
-    assert request is not None
-    assert len(request.key_frames) in (4, 8)
+    assert len(request_of(step).key_frames) in (4, 8)
     visit.clips.opened.emit(())
     assert not report.video.isVisible()
-    request = step.request()
-    assert request is not None
-    assert request.key_frames == ()
+    assert request_of(step).key_frames == ()
 
 
+@pytest.mark.usefixtures("blank_pages")
 def test_pictures_are_offered_also_where_the_results_come_after_the_video(
     step: ReportStep, visit: Visit, analysis: Analysis
 ) -> None:
-    report, evaluation, request = step.page.report, visit.evaluation, step.request()
-    assert request is not None
-    walk = next(one for one in analysis.recordings if one.name == request.walks[-1])
+    report, evaluation = step.page.report, visit.evaluation
+    walk = next(one for one in analysis.recordings if one.name == request_of(step).walks[-1])
     session = evaluation.session
     evaluation.session = evaluation.analysis = None
     visit.clips.opened.emit((drawn_clip(walk, size=(320, 180)),))
