@@ -8,25 +8,22 @@ from app.patient_screen.click_track import ClickTrack
 from tests.app.patient_screen.sound_detection import onsets_s
 
 RATE_HZ = 48_000
+COARSE_HZ = 8_000  # where rounding to a sample costs six times as much
 MOST_OFF_S = 0.002
 
 
-def click() -> NDArray[np.int16]:
+def click(rate_hz: int = RATE_HZ) -> NDArray[np.int16]:
     """A click of the test's own: 40 ms of 500 Hz that fades."""
-    time_s = np.arange(1920) / RATE_HZ
+    time_s = np.arange(rate_hz // 25) / rate_hz
     return np.round(8000 * np.sin(2 * np.pi * 500 * time_s) * np.exp(-time_s / 0.01)).astype(np.int16)
-
-
-def rendered(track: ClickTrack, seconds: float, block: int = 960) -> NDArray[np.float64]:
-    parts = [track.read(block) for _ in range(round(seconds * RATE_HZ / block))]
-    return np.concatenate(parts).astype(float)
 
 
 @pytest.mark.parametrize("beats_per_min", [30, 97, 200])
 def test_ten_minutes_of_clicks_do_not_drift(beats_per_min: int) -> None:
-    track = ClickTrack(click(), RATE_HZ)
+    track = ClickTrack(click(COARSE_HZ), COARSE_HZ)
     track.set_rate(beats_per_min)
-    found_s = onsets_s(rendered(track, 600.0), RATE_HZ)
+    samples = np.concatenate([track.read(960) for _ in range(600 * COARSE_HZ // 960)])
+    found_s = onsets_s(samples.astype(float), COARSE_HZ)
     assert len(found_s) == 10 * beats_per_min
     due_s = 60.0 / beats_per_min * np.arange(len(found_s))
     assert np.abs(found_s - found_s[0] - due_s).max() < MOST_OFF_S
