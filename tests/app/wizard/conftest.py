@@ -27,6 +27,7 @@ from core.session import Patient, Session
 from devices.emulators.dot_faults import DotFaults
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
+from tests.app.wizard.begun_visit import begin, save_patient
 from tests.app.wizard.dressed_patient import Worn, dressed_patient
 from tests.app.wizard.present import present
 from tests.devices.dot.fast_radio import FastRadio
@@ -98,6 +99,23 @@ def visit(controller: LibraryController, choice: SourceChoice) -> Iterator[Visit
 
 
 @pytest.fixture
+def begun(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> Visit:
+    """A visit with sensors on."""
+    begin(qtbot, visit, worn)
+    return visit
+
+
+@pytest.fixture
+def looked_at(qtbot: QtBot, begun: Visit, monkeypatch: pytest.MonkeyPatch) -> Iterator[Visit]:
+    """The same, whose recordings nobody evaluates."""
+    monkeypatch.setattr(begun, "evaluate", lambda: None)
+    yield begun
+    if begun.recordings.is_recording:
+        with qtbot.waitSignal(begun.recordings.ended):
+            begun.recordings.stop()
+
+
+@pytest.fixture
 def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path) -> Iterator[Wizard]:
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     wizard = Wizard(controller, settings)
@@ -116,9 +134,7 @@ def worn() -> dict[str, Site]:
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     """Sensors, entered; files about another step have their own."""
-    visit.patient.edit(Patient(code="DEMO-7"))
-    with qtbot.waitSignal(visit.patient.changed):
-        visit.patient.commit()
+    save_patient(qtbot, visit, Patient(code="DEMO-7"))
     step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 672)

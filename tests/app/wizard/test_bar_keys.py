@@ -25,6 +25,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.session import Session
+from tests.app.wizard.present import present
 
 TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "X": "Exclude"}
 KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "X": Qt.Key.Key_X}
@@ -121,12 +122,10 @@ def test_it_does_so_on_pages_that_are_full_of_results(
     simulated_session: Session,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    assert controller.state is not None
-    opened = controller.state.library
+    opened = present(controller.state).library
     import_session(opened, simulated_session, lambda _share, _what: None, "DEMO-1")
     wizard.show_session(opened.library.sessions.list()[0].id)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy)
     for number in StepId:
         monkeypatch.setattr(type(wizard.steps[number]), "cannot_enter", "")

@@ -31,6 +31,7 @@ from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Joint, Side, Site
 from tests.app.wizard.conftest import PASSPHRASE
+from tests.app.wizard.present import present
 from tests.safety.wizard_kills import COMMENT, CONDITION, SPEED, Point
 
 LOST_S = 0.25  # of our time: as the journal promises at worst
@@ -47,8 +48,7 @@ def killed_at(point: Point, folder: Path, untouched: Path, *more: str) -> dict[s
     command = [sys.executable, "-m", "tests.safety.wizard_kills", str(library), PASSPHRASE, str(point), *more]
     with subprocess.Popen(command, cwd=Path(__file__).parents[3], stdout=subprocess.PIPE, text=True) as child:
         try:
-            assert child.stdout is not None
-            line = child.stdout.readline()
+            line = present(child.stdout).readline()
         finally:
             child.send_signal(signal.SIGKILL)
     assert line, "it ended before it came to its point"
@@ -82,9 +82,9 @@ def start_again(
         home.show()
         with qtbot.waitSignal(controller.opened):
             controller.open(lambda holder: holder.open(tmp_path / "library", PASSPHRASE))
-        assert controller.state is not None
-        home.show_library(controller.state)
-        if controller.state.interrupted:
+        state = present(controller.state)
+        home.show_library(state)
+        if state.interrupted:
             with qtbot.waitSignal(home.recovering.recovered):
                 pass
         wizard.show()
@@ -148,8 +148,7 @@ def test_amid_a_walk_with_a_sensor_on_the_pelvis(start_again: Start, untouched_l
 
 
 def placed(visit: Visit) -> Mapping[Site, PlacedSensor]:
-    placement = visit.recordings.walks[-1].stored.placement
-    assert placement is not None
+    placement = present(visit.recordings.walks[-1].stored.placement)
     return placement.sensors
 
 

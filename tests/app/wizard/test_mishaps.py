@@ -1,7 +1,7 @@
 """What goes wrong around a visit: a busy library, a full disk, somebody who thinks again. Nothing is lost."""
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 from uuid import uuid4
@@ -13,6 +13,7 @@ from app.acquisition.heartbeat import ProcessStall
 from app.acquisition.recorder import Recorder
 from app.editing.session_recording import Ongoing
 from app.storage.journal.disk import Trouble
+from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
@@ -26,23 +27,13 @@ from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, Wizard
 from app.workers.library_controller import LibraryController
-from core.body import LEG_SITES, Site
+from core.body import LEG_SITES
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import asked
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import record, resumed, save_patient, start
+from tests.app.wizard.present import present
 
 BUSY = LibraryBusyError("Another program is using the library", "Wait a moment")
-
-
-@pytest.fixture
-def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Iterator[Visit]:
-    """A visit with sensors on, whose recordings nobody evaluates."""
-    monkeypatch.setattr(visit, "evaluate", lambda: None)
-    begin(qtbot, visit, worn)
-    yield visit
-    if visit.recordings.is_recording:
-        with qtbot.waitSignal(visit.recordings.ended):
-            visit.recordings.stop()
 
 
 def failing(times: int, error: Exception, otherwise: Callable[..., object]) -> Callable[..., object]:
@@ -72,8 +63,7 @@ def failing_once_halted(times: int) -> Callable[..., object]:
 def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
-    assert acquisition is not None
+    recordings, acquisition = looked_at.recordings, present(looked_at.sensors.acquisition)
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     monkeypatch.setattr(
         SharedEdits, "decision", failing(1, LibraryError("Changed meanwhile", "ThemeNotifier"), SharedEdits.decision)
@@ -95,8 +85,7 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
     reported: list[tuple[str, str]] = []
     looked_at.recordings.refused.connect(lambda *words: reported.append(words))
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
-    assert walk.read_back is not None
-    assert len(walk.read_back.imu) == len(LEG_SITES)
+    assert len(present(walk.read_back).imu) == len(LEG_SITES)
     assert not looked_at.recordings.is_recording
     assert len(reported) == 1
     assert "safe on the disk" in reported[0][1]
@@ -105,12 +94,10 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
 def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
-    assert acquisition is not None
+    recordings = looked_at.recordings
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 1)
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
-    with qtbot.waitSignal(recordings.begun):
-        recordings.begin(acquisition, RecordingKind.WALKING)
+    acquisition = start(qtbot, looked_at)
     reported: list[tuple[str, str]] = []
     recordings.refused.connect(lambda *words: reported.append(words))
     recordings.stop()
@@ -124,10 +111,8 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
 def test_a_full_disk_ends_the_recording_on_the_screen_too(
     qtbot: QtBot, looked_at: Visit, trouble: Trouble, ends: bool
 ) -> None:
-    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
-    assert acquisition is not None
-    with qtbot.waitSignal(recordings.begun):
-        recordings.begin(acquisition, RecordingKind.WALKING)
+    recordings = looked_at.recordings
+    start(qtbot, looked_at)
     with qtbot.waitSignal(recordings.troubled) as reported:
         threading.Thread(target=recordings.meet, args=(trouble,)).start()  # as the journal's writer reports it
     assert all(sentence.endswith(".") for sentence in reported.args)
@@ -141,15 +126,12 @@ def test_what_is_stated_of_a_late_disk_follows_its_counters(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Amid a walk: first nothing is lost, then something is, then the disk answers again."""
-    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
-    assert acquisition is not None
+    recordings = looked_at.recordings
     step = WalkingStep(looked_at)
     qtbot.addWidget(step.page)
     step.enter()
-    with qtbot.waitSignal(recordings.begun):
-        recordings.begin(acquisition, RecordingKind.WALKING)
-    assert recordings._latest is not None
-    fine = recordings._latest.status
+    acquisition = start(qtbot, looked_at)
+    fine = present(recordings._latest).status
     now = [replace(fine, stuck_s=3.0)]
     monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
     with qtbot.waitSignal(recordings.troubled) as reported:
@@ -164,8 +146,7 @@ def test_what_is_stated_of_a_late_disk_follows_its_counters(
             step.tick()
         return step.page.notice.text
 
-    recording = step.bar().recording
-    assert recording is not None
+    recording = present(step.bar().recording)
     assert "No data lost so far" in stated()
     assert "Saved" not in recording.note
     monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
@@ -175,8 +156,7 @@ def test_what_is_stated_of_a_late_disk_follows_its_counters(
     now[0] = fine
     monkeypatch.setattr(acquisition, "lost", dict)
     assert stated() == "The disk was slow and now responds again. No data were lost because of this."
-    recording = step.bar().recording
-    assert recording is not None
+    recording = present(step.bar().recording)
     assert "Saved continuously." in recording.note
     step.leave()
     with qtbot.waitSignal(recordings.ended):
@@ -189,8 +169,7 @@ def test_a_standstill_amid_a_recording_is_stated_on_every_step_that_records(
     qtbot: QtBot, wizard: Wizard, is_before: bool, is_stated: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wizard.begin(None)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     ended_s = 99.0 if is_before else 121.0
     standstill = ProcessStall(ended_s - 20.0, ended_s, 20.0, 0.0, {"a": 0})
     acquisition = SimpleNamespace(
@@ -225,8 +204,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
         step.tick()
         qtbot.wait(1)
     assert len(beginnings) == 1
-    primary = step.bar().primary
-    assert primary is not None
+    primary = present(step.bar().primary)
     assert primary.text == "Start free motion"
     with qtbot.waitSignal(looked_at.recordings.begun):
         step.on_intent(Intent(KeyAction.RUN))
@@ -239,8 +217,7 @@ def test_a_step_that_was_left_before_it_began_leaves_the_samples_to_the_next(
     qtbot: QtBot, looked_at: Visit, kind: type[StandStillStep] | type[FreeMotionStep], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The library answers when the next step looks at the sensors already."""
-    acquisition, watching = looked_at.sensors.acquisition, list[object]()
-    assert acquisition is not None
+    acquisition, watching = present(looked_at.sensors.acquisition), list[object]()
     step = kind(looked_at)
     qtbot.addWidget(step.page)
     step.enter()
@@ -288,8 +265,7 @@ def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
     wizard.steps[StepId.PATIENT].demonstration_required.emit()
     wizard.begin(None)  # before the library has answered
     asked(qtbot, controller, lambda _opened: None)
-    assert wizard.visit is not None
-    assert wizard.visit.patient.details.code == ""
+    assert present(wizard.visit).patient.details.code == ""
 
 
 def test_who_skips_the_free_motion_is_reported_its_price(qtbot: QtBot, looked_at: Visit) -> None:
@@ -299,13 +275,10 @@ def test_who_skips_the_free_motion_is_reported_its_price(qtbot: QtBot, looked_at
     assert step.bar().note.startswith("Next:")
 
 
-def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryController, looked_at: Visit) -> None:
+def test_walks_are_judged_without_sensors(qtbot: QtBot, library: Library, looked_at: Visit) -> None:
     looked_at.recordings.keep(record(qtbot, looked_at, RecordingKind.WALKING, 1.0), is_kept=True)
     qtbot.waitUntil(lambda: looked_at.recordings.walks[0].stored.is_decided)
-    assert looked_at.session is not None
-    again = Visit(controller, [])
-    with qtbot.waitSignal(again.resumed):
-        again.resume(looked_at.session.id)
+    again = resumed(qtbot, looked_at)
     step = WalkingStep(again)
     qtbot.addWidget(step.page)
     assert step.cannot_enter == ""
@@ -313,9 +286,8 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     assert not step.bar().others[0].is_enabled
     assert step.bar().note == "Choose the sensor source first."
     (walk,) = again.recordings.walks
-    assert controller.state is not None
     sha256 = {journal.segment: journal.sha256 for journal in walk.stored.journals}
-    recovered = controller.state.library.library.recordings.close(walk.id, RecordingState.RECOVERED, sha256)
+    recovered = library.recordings.close(walk.id, RecordingState.RECOVERED, sha256)
     again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
     assert "was recovered, up to the last data on disk" in step.page.notice.text
@@ -326,15 +298,12 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
 
 
 def test_sensors_of_another_day_were_strapped_again(
-    qtbot: QtBot, controller: LibraryController, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
         record(qtbot, looked_at, kind, 0.5)
-    assert looked_at.session is not None
     monkeypatch.setattr("app.wizard.visit.current_time", lambda: "2031-02-03T09:00:00+01:00")
-    again = Visit(controller, looked_at.known_choices)
-    with qtbot.waitSignal(again.resumed):
-        again.resume(looked_at.session.id)
+    again = resumed(qtbot, looked_at, looked_at.known_choices)
     assert again.recordings.has_moved
     looked_at.sensors.close()
     with qtbot.waitSignal(again.refused) as reported:
@@ -345,29 +314,23 @@ def test_sensors_of_another_day_were_strapped_again(
     again.finish()
 
 
-def test_a_session_stays_its_patients(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
-    begin(qtbot, visit, worn)
-    record(qtbot, visit, RecordingKind.WALKING, 0.5)
-    visit.recordings.session = visit.session
+def test_a_session_stays_its_patients(qtbot: QtBot, begun: Visit) -> None:
+    record(qtbot, begun, RecordingKind.WALKING, 0.5)
+    begun.recordings.session = begun.session
     for code, is_taken in (("DEMO-8", True), ("P-8", False)):
-        visit.patient.edit(replace(visit.patient.details, code=code))
-        with qtbot.waitSignals([visit.patient.changed if is_taken else visit.patient.refused]):
-            visit.patient.commit()
-    assert visit.patient.details.code == "DEMO-8"  # corrected; what is simulated becomes nobody's who is not
-    assert visit.patient.stored is not None
-    assert visit.session is not None
-    assert visit.patient.stored.id == visit.session.patient_id
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
+        begun.patient.edit(replace(begun.patient.details, code=code))
+        with qtbot.waitSignals([begun.patient.changed if is_taken else begun.patient.refused]):
+            begun.patient.commit()
+    assert begun.patient.details.code == "DEMO-8"  # corrected; what is simulated becomes nobody's who is not
+    assert present(begun.patient.stored).id == present(begun.session).patient_id
+    qtbot.waitUntil(lambda: not begun.evaluation.is_busy)
 
 
 def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
-    qtbot: QtBot, controller: LibraryController, visit: Visit
+    qtbot: QtBot, library: Library, visit: Visit
 ) -> None:
-    assert controller.state is not None
-    library = controller.state.library.library
     library.sessions.create(library.patients.create(Patient(code="DEMO-98")).id, Session(recordings=()))
-    demo = library.patients.find("DEMO-98")
-    assert demo is not None
+    demo = present(library.patients.find("DEMO-98"))
     visit.patient.choose(demo)
     with qtbot.waitSignal(visit.changed):
         visit.record.begin()
@@ -381,11 +344,8 @@ def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
 
 def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Visit) -> None:
     for code in ("demo-5", "DEMO-5"):
-        visit.patient.edit(Patient(code=code))
-        with qtbot.waitSignal(visit.patient.changed):
-            visit.patient.commit()
-    assert visit.patient.stored is not None
-    assert visit.patient.stored.details.code == "DEMO-5"
+        save_patient(qtbot, visit, Patient(code=code))
+    assert present(visit.patient.stored).details.code == "DEMO-5"
 
 
 def test_a_session_that_is_gone_leads_back_and_states_so(
@@ -397,28 +357,24 @@ def test_a_session_that_is_gone_leads_back_and_states_so(
 
 
 def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
-    qtbot: QtBot, wizard: Wizard, controller: LibraryController, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, wizard: Wizard, library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(wizard_module, "choices", tuple)
-    assert controller.state is not None
-    library = controller.state.library.library
     session = library.sessions.create(library.patients.create(Patient(code="DEMO-98")).id, Session(recordings=()))
     wizard.show_session(session.id)
-    assert wizard.visit is not None
-    before = wizard.visit
+    before = present(wizard.visit)
     wizard.begin(None)
     with qtbot.waitSignal(before.resumed):
         pass
     assert wizard.current is not wizard.steps[StepId.RESULTS]
-    assert wizard.visit.session is None
+    assert present(wizard.visit).session is None
 
 
 def test_a_report_still_being_set_when_the_session_is_left_is_waited_for_at_the_end(
     qtbot: QtBot, wizard: Wizard
 ) -> None:
     wizard.begin(None)
-    left, may_end, is_over = wizard.visit, threading.Event(), threading.Event()
-    assert left is not None
+    left, may_end, is_over = present(wizard.visit), threading.Event(), threading.Event()
 
     def work(_report: Report) -> None:
         may_end.wait(10.0)

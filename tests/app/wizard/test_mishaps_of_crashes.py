@@ -23,7 +23,8 @@ from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.calibration.rest import rest_of
 from core.session import RecordingKind
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record, resumed
+from tests.app.wizard.present import present
 
 
 @pytest.fixture
@@ -47,8 +48,7 @@ def wizard(
 
 def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> StepId:
     """Open the session that was left as Home does, and say at which step that is."""
-    assert left.session is not None
-    wizard.show_session(left.session.id)
+    wizard.show_session(present(left.session).id)
     qtbot.waitUntil(lambda: wizard.current is not None and wizard.shell.page is not None)
     assert wizard.current is not None
     return wizard.step_id
@@ -62,8 +62,7 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
     left.recordings.keep(walk, is_kept=True)
     qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided)
     assert landed(qtbot, wizard, left) == StepId.RESULTS
-    assert left.controller.state is not None
-    library = left.controller.state.library.library
+    library = present(left.controller.state).library.library
     files = {journal.segment: journal.sha256 for journal in walk.stored.journals}
     library.recordings.close(walk.id, RecordingState.RECOVERED, files)
     assert landed(qtbot, wizard, left) == StepId.WALKING  # where it is kept or discarded
@@ -72,8 +71,7 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
 def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     standing = record(qtbot, left, RecordingKind.STANDING, 6.0)
     moved = record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
-    assert standing.read_back is not None
-    imu = standing.read_back.imu
+    imu = present(standing.read_back).imu
     shown, moves = StandStillStep(left), FreeMotionStep(left)
 
     def rest(seconds: float) -> None:
@@ -101,9 +99,6 @@ def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_or
     monkeypatch.setattr(time, "time_ns", lambda: true_ns() - 86_400_000_000_000)  # the ids sort by it
     record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
     record(qtbot, left, RecordingKind.WALKING, 0.5)
-    assert left.session is not None
-    again = Visit(left.controller, [])
-    with qtbot.waitSignal(again.resumed):
-        again.resume(left.session.id)
+    again = resumed(qtbot, left)
     assert [recording.details.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
     again.finish()

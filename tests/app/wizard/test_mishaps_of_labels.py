@@ -10,17 +10,12 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import Site
 from core.session import RecordingKind
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import record
 
 
 @pytest.fixture
-def sensors_step(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
-) -> Iterator[SensorsStep]:
-    """The page of a visit with sensors on, whose recordings nobody evaluates."""
-    monkeypatch.setattr(visit, "evaluate", lambda: None)
-    begin(qtbot, visit, worn)
-    step = SensorsStep(visit)
+def sensors_step(qtbot: QtBot, looked_at: Visit) -> Iterator[SensorsStep]:
+    step = SensorsStep(looked_at)
     qtbot.addWidget(step.page)
     yield step
     step.deleteLater()

@@ -14,18 +14,18 @@ from app.wizard.visit import Visit
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind, Session
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import record
+from tests.app.wizard.present import present
 
 THIGH, SHANK = Site.LEFT_THIGH, Site.LEFT_SHANK
 
 
 @pytest.fixture
 def calibrated(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, looked_at: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[SensorsStep]:
     """A visit whose joints were found from what its sensors recorded, at the page Sensors."""
-    monkeypatch.setattr(visit, "evaluate", lambda: None)
-    begin(qtbot, visit, worn)
+    visit = looked_at
     record(qtbot, visit, RecordingKind.FREE_MOTION, 0.5)
     imu = {site: ImuBlock(name, *np.zeros((1, 0)), *np.zeros((2, 0, 3))) for name, site in worn.items()}
     visit.evaluation.session = Session((Recording("free motion", RecordingKind.FREE_MOTION, "f", imu),))
@@ -47,8 +47,7 @@ def test_what_was_found_of_a_joint_holds_for_the_sensors_it_was_found_with(
 
 
 def test_it_holds_again_once_it_was_found_again_under_the_new_places(visit: Visit, calibrated: SensorsStep) -> None:
-    sensors, evaluated = visit.sensors, visit.evaluation.session
-    assert evaluated is not None
+    sensors, evaluated = visit.sensors, present(visit.evaluation.session)
     sensors.assign(sensors.sensor_at[THIGH], SHANK)
     assert set(visit.calibration) == {Joint.RIGHT_KNEE, Joint.RIGHT_ANKLE}
     free = evaluated.recordings[0]
@@ -110,6 +109,5 @@ def test_sides_that_are_swapped_are_swapped_for_what_is_recorded_next(
         visit.worn.swap_sides()
     assert visit.sensors.site_of[left] is Site.RIGHT_THIGH
     walk = record(qtbot, visit, RecordingKind.WALKING, 0.5)
-    assert walk.stored.placement is not None
-    assert walk.stored.placement.sensors[Site.RIGHT_THIGH].name == left
+    assert present(walk.stored.placement).sensors[Site.RIGHT_THIGH].name == left
     assert {site.side for site in visit.sensors.site_of.values()} == set(Side)

@@ -10,6 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.recorder import ROW_WAIT_S, Recorder
 from app.editing.session_recording import SessionRecording
+from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryFaultError, RecordingState
@@ -17,7 +18,8 @@ from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side, Site
 from core.session import RecordingKind
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record, start
+from tests.app.wizard.present import present
 
 FAULT = LibraryFaultError("The library file cannot be read or written", "Check the disk")
 
@@ -33,15 +35,13 @@ def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
 
 @pytest.mark.endurance
 def test_no_call_of_the_library_holds_up_a_recording(
-    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, controller: LibraryController, begun: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was stated before."""
-    begin(qtbot, visit, worn)
-    recordings, acquisition, over = visit.recordings, visit.sensors.acquisition, Event()
+    recordings, over = begun.recordings, Event()
     monkeypatch.setattr("app.wizard.recordings.WAITED_MS", 200)
-    assert acquisition is not None
     controller.run(hanging(over), None, None, controller)
-    visit.place_sensors()  # behind it, and before the walk
+    begun.place_sensors()  # behind it, and before the walk
     reported: list[tuple[str, str]] = []
     recordings.troubled.connect(lambda *words: reported.append(words))
     recordings.refused.connect(lambda *words: reported.append(words))
@@ -50,8 +50,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
     try:
         for _ in range(2):
             asked_s = time.monotonic()
-            with qtbot.waitSignal(recordings.begun):
-                recordings.begin(acquisition, RecordingKind.WALKING)
+            acquisition = start(qtbot, begun)
             assert time.monotonic() - asked_s < ROW_WAIT_S + 3.0  # on a busy machine; alone it is a second
             recordings.stop()
             qtbot.waitUntil(lambda: not recordings.is_recording)
@@ -69,16 +68,13 @@ def test_no_call_of_the_library_holds_up_a_recording(
     assert [recording.details.name for recording in ended] == ["walk 1", "walk 2"]
     assert [recording.stored.state for recording in ended] == [RecordingState.CLOSED] * 2
     for recording in ended:
-        assert recording.read_back is not None
-        assert set(recording.read_back.imu) == set(LEG_SITES)
-    assert visit.session is not None
-    assert [recording.stored.placement for recording in ended] == [visit.session.placements[-1]] * 2
+        assert set(present(recording.read_back).imu) == set(LEG_SITES)
+    assert [recording.stored.placement for recording in ended] == [present(begun.session).placements[-1]] * 2
 
 
 def test_a_database_that_fails_in_whatever_way_costs_no_recording(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, begun: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    begin(qtbot, visit, worn)
     is_broken = [True]
     for name in ("start", "add_journal", "close"):
         whole = getattr(Recordings, name)
@@ -89,9 +85,8 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
             return whole(*arguments, **named)
 
         monkeypatch.setattr(Recordings, name, call)
-    recordings, acquisition = visit.recordings, visit.sensors.acquisition
+    recordings, acquisition = begun.recordings, present(begun.sensors.acquisition)
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 50)
-    assert acquisition is not None
     with qtbot.waitSignals([recordings.begun, recordings.troubled]):
         recordings.begin(acquisition, RecordingKind.WALKING)
     with qtbot.waitSignal(recordings.refused) as reported:
@@ -113,24 +108,21 @@ def test_the_name_of_one_that_could_not_be_read_back_is_not_given_again(
         raise FAULT
 
     begin(qtbot, visit, worn)
-    recordings, acquisition = visit.recordings, visit.sensors.acquisition
-    assert acquisition is not None
+    recordings = visit.recordings
     monkeypatch.setattr("app.wizard.reading_back.MOST_READINGS", 1)
     with monkeypatch.context() as broken:
         broken.setattr(Recorder, "stop", unreadable)
-        with qtbot.waitSignal(recordings.begun):
-            recordings.begin(acquisition, RecordingKind.WALKING)
+        start(qtbot, visit)
         with qtbot.waitSignal(recordings.refused):
             recordings.stop()
     assert recordings.is_idle
     assert record(qtbot, visit, RecordingKind.WALKING, 0.5).details.name == "walk 2"
 
 
-def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, library: Library, begun: Visit) -> None:
     """The second is made before the library has answered the first."""
-    begin(qtbot, visit, worn)
-    walk = record(qtbot, visit, RecordingKind.WALKING, 0.5)
-    recordings = visit.recordings
+    walk = record(qtbot, begun, RecordingKind.WALKING, 0.5)
+    recordings = begun.recordings
     recordings.keep(walk, is_kept=True)
     recordings.change(walk, lambda reported: replace(reported, condition="barefoot"))
     recordings.change(walk, lambda reported: replace(reported, left_out_s={Side.LEFT: (4.0,)}))
@@ -140,42 +132,32 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     assert (reported.condition, dict(reported.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
     for is_kept in (True, False):
         recordings.keep(recordings.walks[0], is_kept)
-    assert visit.controller.state is not None
-    library = visit.controller.state.library.library
     passed = Event()
-    visit.controller.run(lambda _opened: passed.set(), None, None, visit)
+    begun.controller.run(lambda _opened: passed.set(), None, None, begun)
     assert passed.wait(20)
-    stored = library.recordings.find(walk.id)
-    assert stored is not None
+    stored = present(library.recordings.find(walk.id))
     assert not stored.details.is_kept
 
 
-def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
-    begin(qtbot, visit, worn)
-    recordings, acquisition = visit.recordings, visit.sensors.acquisition
-    assert acquisition is not None
+def test_what_was_broken_off_does_not_count(qtbot: QtBot, begun: Visit) -> None:
+    recordings, acquisition = begun.recordings, present(begun.sensors.acquisition)
     recordings.begin(acquisition, RecordingKind.STANDING)
     recordings.stop(is_kept=False)  # before it has begun
     assert recordings.is_stopping
     recordings.stop()  # who reports it once more does not say that it counts
     qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept)
     assert recordings.standing is None
-    record(qtbot, visit, RecordingKind.STANDING, 2.0)
+    record(qtbot, begun, RecordingKind.STANDING, 2.0)
     assert recordings.standing is not None
 
 
 def test_a_walk_that_ends_with_the_window_waits_to_be_kept_or_discarded(
-    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, library: Library, begun: Visit
 ) -> None:
-    begin(qtbot, visit, worn)
-    recordings, acquisition = visit.recordings, visit.sensors.acquisition
-    assert acquisition is not None
-    with qtbot.waitSignal(recordings.begun):
-        recordings.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(recordings.ended):
-        visit.close()
-    assert controller.state is not None
-    (walk,) = controller.state.library.library.recordings.undecided()
+    start(qtbot, begun)
+    with qtbot.waitSignal(begun.recordings.ended):
+        begun.close()
+    (walk,) = library.recordings.undecided()
     assert walk.recording.details.name == "walk 1"
-    controller.state.library.library.recordings.decide(walk.recording, is_kept=False)
-    assert controller.state.library.library.recordings.undecided() == ()
+    library.recordings.decide(walk.recording, is_kept=False)
+    assert library.recordings.undecided() == ()

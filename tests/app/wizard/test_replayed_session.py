@@ -17,6 +17,8 @@ from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
 from devices.files.xsens_mtmanager import mtmanager_trial
 from devices.simulation.walker import DEMONSTRATION
+from tests.app.wizard.begun_visit import save_patient
+from tests.app.wizard.present import present
 from tests.simulated import analysis_of, session_of
 from tests.trials_of_files import import_with
 
@@ -27,11 +29,8 @@ BONES = {"femur": "thigh", "tibia": "shank", "calcn": "foot"}
 def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
     """Replay a folder for a new patient, and go on to the step of standing."""
     wizard.begin(None)
-    visit = wizard.visit
-    assert visit is not None
-    visit.patient.edit(Patient(code="DEMO-8"))
-    with qtbot.waitSignal(visit.patient.changed):
-        visit.patient.commit()
+    visit = present(wizard.visit)
+    save_patient(qtbot, visit, Patient(code="DEMO-8"))
     wizard.go_to(StepId.SENSORS)
     sensors = wizard.current
     assert isinstance(sensors, SensorsStep)
@@ -43,8 +42,7 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
 
 
 def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     with qtbot.waitSignal(visit.recordings.begun):
         wizard.press_primary()
     qtbot.wait(round(1000 * seconds))
@@ -53,12 +51,10 @@ def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
 
 
 def results(qtbot: QtBot, wizard: Wizard) -> Analysis:
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     wizard.go_to(StepId.RESULTS)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy and visit.evaluation.analysis is not None)
-    analysis = visit.evaluation.analysis
-    assert analysis is not None
+    analysis = present(visit.evaluation.analysis)
     assert analysis.is_simulated, "nobody was measured now"
     assert all(recording.stored.is_simulated for recording in visit.recordings.every)
     return analysis
@@ -82,8 +78,7 @@ def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, w
     qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING)
     record_walk(qtbot, wizard, 20.0)
     analysis, stored = results(qtbot, wizard), analysis_of(read_session(folder))
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     assert min(visit.evaluation.strides("walk 1").values()) >= 8
     for joint in LEG_JOINTS:
         assert range_deg(analysis, joint) == pytest.approx(range_deg(stored, joint), abs=3.0), joint
@@ -108,8 +103,7 @@ def test_a_real_walk_without_standing_goes_as_far(
     qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING)
     record_walk(qtbot, wizard, 24.0)
     analysis = results(qtbot, wizard)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     strides = visit.evaluation.strides("walk 1")
     assert {side: strides[side] >= 8 for side in Side} == dict.fromkeys(Side, True)
     assert "rate_from_orientation" in {finding.key for finding in analysis.findings}, "as the file has it"

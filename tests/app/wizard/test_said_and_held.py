@@ -20,6 +20,7 @@ from app.wizard.step import StepId
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.session import Session
+from tests.app.wizard.present import present
 from tests.safety.random_keys import play
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
 
@@ -29,8 +30,7 @@ Alter = Callable[[str], None]
 @pytest.fixture
 def opened(controller: LibraryController, simulated_session: Session) -> OpenedLibrary:
     """The controller's library, with a session of two walks."""
-    assert controller.state is not None
-    library = controller.state.library
+    library = present(controller.state).library
     import_session(library, simulated_session, lambda _share, _what: None, "DEMO-1")
     return library
 
@@ -46,8 +46,7 @@ def alter(opened: OpenedLibrary) -> Alter:
 
     def change(statement: str) -> None:
         with closing(sqlite.connect(str(opened.folder / "library.db"), isolation_level=None)) as connection:
-            assert opened.data_key is not None
-            connection.execute(f"PRAGMA key = \"x'{opened.data_key.hex()}'\"")
+            connection.execute(f"PRAGMA key = \"x'{present(opened.data_key).hex()}'\"")
             connection.execute(statement)
 
     return change
@@ -58,8 +57,7 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
     """A window that shows the session at Walking."""
     (line,) = opened.library.sessions.list()
     wizard.show_session(line.id)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy)
     wizard.go_to(StepId.WALKING)
     return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, wizard=wizard)
@@ -69,10 +67,9 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
 def home_in_sight(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, opened: OpenedLibrary, tmp_path: Path
 ) -> Any:
-    assert controller.state is not None
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
-    home.show_library(controller.state)
+    home.show_library(present(controller.state))
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines))
     return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, wizard=None)
 

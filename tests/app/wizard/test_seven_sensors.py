@@ -31,6 +31,7 @@ from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standin
 from tests.app.storage.library.folder_export import write_folder
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 from tests.simulated import session_of
 
@@ -102,29 +103,23 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
     assert set(visit.evaluation.hips) == HIPS
     assert visit.session is not None
     for recording in visit.recordings.every:
-        assert recording.stored.placement is not None
-        assert set(recording.stored.placement.sensors) == set(Site)
-        assert recording.read_back is not None
-        assert set(recording.read_back.imu) == set(Site)
+        assert set(present(recording.stored.placement).sensors) == set(Site)
+        assert set(present(recording.read_back).imu) == set(Site)
     again = Visit(controller, [])
     with qtbot.waitSignals([again.resumed, again.evaluation.done]):
         again.resume(visit.session.id)
     assert set(again.rests) == set(worn)
     assert set(again.evaluation.hips) == HIPS
-    one, other = visit.evaluation.analysis, again.evaluation.analysis
-    assert one is not None
-    assert other is not None
+    one, other = present(visit.evaluation.analysis), present(again.evaluation.analysis)
     assert packed(one) == packed(other)
     with qtbot.waitSignal(again.evaluation.done):
         again.worn.swap_sides()
-    placement = again.recordings.walks[-1].stored.placement
-    assert placement is not None
+    placement = present(again.recordings.walks[-1].stored.placement)
     assert placement.sensors[Site.PELVIS].name == "DEMO-pelvis"
     assert placement.sensors[Site.LEFT_FOOT].name == "DEMO-right_foot"
     again.finish()
 
-    assert controller.state is not None
-    opened = controller.state.library
+    opened = present(controller.state).library
     stored = opened.library.sessions.get(visit.session.id)
     played = replay_of(session_with_samples(opened, stored, DECODERS, lambda *_: None), "again")
     assert played.worn["DEMO-pelvis"] is Site.PELVIS
@@ -173,18 +168,17 @@ def looked(qtbot: QtBot, visit: Visit) -> Iterator[list[Looked]]:
 
 @pytest.mark.endurance
 def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, looked: list[Looked]
+    qtbot: QtBot, begun: Visit, source: ReplaySource, looked: list[Looked]
 ) -> None:
-    begin(qtbot, visit, worn)
-    record(qtbot, visit, RecordingKind.STANDING, 4.0)
-    with qtbot.waitSignal(visit.evaluation.done):
-        record(qtbot, visit, RecordingKind.FREE_MOTION, 12.0)
-    step = WalkingStep(visit)
+    record(qtbot, begun, RecordingKind.STANDING, 4.0)
+    with qtbot.waitSignal(begun.evaluation.done):
+        record(qtbot, begun, RecordingKind.FREE_MOTION, 12.0)
+    step = WalkingStep(begun)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     page = step.page
     assert page.charts.hip.isVisible() is False  # the walks stand there until one is recorded
-    with qtbot.waitSignal(visit.recordings.begun):
+    with qtbot.waitSignal(begun.recordings.begun):
         press(step)
     qtbot.waitUntil(lambda: set(page.live.hips) == set(Side))
     assert page.charts.hip.isVisible()
@@ -192,7 +186,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     qtbot.waitUntil(lambda: not any(one.is_provisional for one in page.live.hips.values()))
     hip_deg = np.rad2deg(page.live.hips[Side.LEFT].angle_rad[-300:])
     assert np.nanmax(hip_deg) - np.nanmin(hip_deg) > 25.0
-    pelvis = visit.sensors.sensor_at[Site.PELVIS]
+    pelvis = begun.sensors.sensor_at[Site.PELVIS]
     source.silence(pelvis)
     qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: no signal for"))
     assert "Recording continues, including knees and ankles" in page.notice.text
@@ -201,20 +195,18 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     assert page.live.now_s - page.live.hips[Side.LEFT].time_s[-1] > 1.0
     source.wake(pelvis)
     qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: signal back"))
-    with qtbot.waitSignal(visit.recordings.ended):
+    with qtbot.waitSignal(begun.recordings.ended):
         press(step)
-    walk = visit.recordings.walks[-1]
-    assert walk.read_back is not None
-    assert Site.PELVIS in walk.read_back.imu
+    walk = begun.recordings.walks[-1]
+    assert Site.PELVIS in present(walk.read_back).imu
 
 
 @pytest.mark.endurance
 def test_live_gauges_of_hips_close_and_never_hold_up_the_free_motion(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], looked: list[Looked]
+    qtbot: QtBot, begun: Visit, looked: list[Looked]
 ) -> None:
-    begin(qtbot, visit, worn)
-    record(qtbot, visit, RecordingKind.STANDING, 4.0)
-    step = FreeMotionStep(visit)
+    record(qtbot, begun, RecordingKind.STANDING, 4.0)
+    step = FreeMotionStep(begun)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     assert all(hip.isVisible() for hip in step.page.hips.values())
@@ -223,12 +215,11 @@ def test_live_gauges_of_hips_close_and_never_hold_up_the_free_motion(
 
 @pytest.mark.endurance
 def test_live_free_motion_ends_though_the_hips_are_open(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, looked: list[Looked]
+    qtbot: QtBot, begun: Visit, source: ReplaySource, looked: list[Looked]
 ) -> None:
-    begin(qtbot, visit, worn)
-    record(qtbot, visit, RecordingKind.STANDING, 4.0)
+    record(qtbot, begun, RecordingKind.STANDING, 4.0)
     source.ask(RecordingKind.FREE_MOTION)  # the lunges: the circling legs come next
-    step = FreeMotionStep(visit)
+    step = FreeMotionStep(begun)
     qtbot.addWidget(step.page)
     with qtbot.waitSignal(step.done):
         looked.append(Looked(step))

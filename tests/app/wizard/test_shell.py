@@ -25,6 +25,7 @@ from app.wording.translation import tr, use_language
 from core.body import LEG_SITES, Site
 from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
+from tests.app.wizard.present import present
 
 RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops the walk, with a sound.")
 
@@ -134,8 +135,7 @@ def test_the_frame_takes_the_form_that_the_window_has_room_for(
 def test_the_content_is_no_wider_than_can_be_read_and_in_the_middle(shell: WizardShell) -> None:
     shell.resize(2400, 1080)
     settle()
-    page = shell.page
-    assert page is not None
+    page = present(shell.page)
     left = page.mapTo(shell, page.rect().topLeft()).x() - shell.rail.width()
     assert page.width() == 1600
     assert left == (2400 - shell.rail.width() - 1600) // 2
@@ -147,8 +147,7 @@ def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell) -> 
     set_scale(2.0)
     shell.resize(1920, 1200)
     settle()
-    page = shell.page
-    assert page is not None
+    page = present(shell.page)
     assert reported[-1] == (True, page.width() / 2, page.height() / 2)
     reported.clear()
     shell.show_page(StepId.SENSORS, Page())
@@ -279,8 +278,7 @@ def test_a_low_window_has_no_room_for_tiles_and_states_it_in_the_header(shell: W
 
 
 def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) -> None:
-    page = shell.page
-    assert page is not None
+    page = present(shell.page)
     shell.bar.show_state(recording())
     settle()
     before = page.mapTo(shell, page.rect().topLeft())

@@ -16,7 +16,7 @@ from app.storage.edited_fields import patient_fields, recording_fields, session_
 from app.storage.library import Library
 from app.storage.opened import open_library
 from app.storage.shared_edits import SharedEdits
-from app.storage.stored import BEGINNING, LibraryError, Limits, PlacedSensor
+from app.storage.stored import BEGINNING, LibraryError, Limits, PlacedSensor, StoredRecording, StoredSession
 from app.storage.three_way import Value
 from app.wizard.report.step import ReportStep
 from app.wizard.results.stride_choice import StrideChoice
@@ -29,6 +29,7 @@ from core.samples import SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import asked
 from tests.app.wizard.conftest import PASSPHRASE
+from tests.app.wizard.present import present
 
 REPORTED = Patient("DEMO-9", 1966, height_m=1.68, aids="stick")
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="shoes")
@@ -51,7 +52,7 @@ class OtherStation:
         self.library.edits.patient(self.patient.id, base, base | reported)
 
     def say_of_session(self, reported: dict[str, Value]) -> None:
-        visit = self.library.sessions.get(self.session_id)
+        visit = self.session
         base = session_fields(visit.details, visit.comment, visit.limits)
         self.library.edits.session(self.session_id, base, base | reported)
 
@@ -64,10 +65,16 @@ class OtherStation:
         return self.library.patients.get(self.patient.id).details
 
     @property
+    def session(self) -> StoredSession:
+        return self.library.sessions.get(self.session_id)
+
+    @property
+    def stored_walk(self) -> StoredRecording:
+        return present(self.library.recordings.find(self.walk_id))
+
+    @property
     def walk(self) -> Recording:
-        stored = self.library.recordings.find(self.walk_id)
-        assert stored is not None
-        return stored.details
+        return self.stored_walk.details
 
     def history(self) -> list[tuple[str, object, object, bool]]:
         """Field, old and new value of each change, oldest first, and whether it was taken back."""
@@ -91,13 +98,9 @@ def other(controller: LibraryController, tmp_path: Path) -> Iterator[OtherStatio
 def ours(qtbot: QtBot, wizard: Wizard, other: OtherStation) -> Visit:
     """The session at our station, in the wizard, with the walk as it would have been read."""
     wizard.show_session(other.session_id)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     qtbot.waitUntil(lambda: visit.session is not None)
-    stored = other.library.recordings.find(other.walk_id)
-    assert stored is not None
-    assert visit.session is not None
-    visit.recordings.take_over(visit.session, (SessionRecording(stored),))  # it has no journal
+    visit.recordings.take_over(present(visit.session), (SessionRecording(other.stored_walk),))  # it has no journal
     return visit
 
 
@@ -115,8 +118,15 @@ class Ear:
 
 def dialog_of(qtbot: QtBot, wizard: Wizard) -> EditDialog:
     qtbot.waitUntil(lambda: wizard.asked.dialog is not None)
-    assert wizard.asked.dialog is not None
-    return wizard.asked.dialog
+    return present(wizard.asked.dialog)
+
+
+def report_of(wizard: Wizard) -> ReportStep:
+    """The last step, with its page."""
+    step = wizard.steps[StepId.REPORT]
+    assert isinstance(step, ReportStep)
+    wizard.shell.add_page(step.id, step.page)
+    return step
 
 
 def answer(dialog: EditDialog, *keys: Qt.Key) -> None:
@@ -143,7 +153,7 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     qtbot.waitUntil(lambda: bool(received))
     assert wizard.shell.banner.text.startswith("At another workstation, hk deleted DEMO-9.")
     other.library.patients.restore(other.library.patients.get(other.patient.id))
-    visit = other.library.sessions.get(other.session_id)
+    visit = other.session
     wizard.look_for_changes()
     asked(qtbot, controller, lambda library: library.folder)  # after the look
     other.library.sessions.delete(visit)
@@ -206,8 +216,7 @@ def test_what_nobody_else_changed_is_saved_without_a_word(
     ours.record.set_turned(Joint.LEFT_KNEE, -1)
     ours.record.set_comment("Limps.", "")
     ours.record.set_zero(Joint.LEFT_KNEE, 0.1)
-    other_sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, ours, other, lambda: bool(other_sessions.get(session_id).details.zero_rad))
+    settle(qtbot, ours, other, lambda: bool(other.session.details.zero_rad))
     qtbot.waitUntil(lambda: ours.patient.is_saved)
     assert ear.received == []
     assert wizard.asked.dialog is None
@@ -215,8 +224,7 @@ def test_what_nobody_else_changed_is_saved_without_a_word(
 
 def test_going_on_from_the_patient_waits_for_the_answer(qtbot: QtBot, wizard: Wizard, other: OtherStation) -> None:
     wizard.begin(other.patient)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     qtbot.waitUntil(lambda: visit.patient.is_saved)
     other.say_of_patient(height_m=1.80)
     visit.patient.edit(replace(visit.patient.details, height_m=1.82))
@@ -231,10 +239,7 @@ def test_going_on_from_the_patient_waits_for_the_answer(qtbot: QtBot, wizard: Wi
 def test_words_of_the_report_typed_at_both_stations_are_asked_about(
     qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
 ) -> None:
-    step = wizard.steps[StepId.REPORT]
-    assert isinstance(step, ReportStep)
-    wizard.shell.add_page(step.id, step.page)
-    report = step.page.report
+    report = report_of(wizard).page.report
     other.say_of_session({"comment": "The left foot drags."})
     report.comment.setPlainText("Keep alignment C.")
     report.editor.flush()
@@ -242,8 +247,7 @@ def test_words_of_the_report_typed_at_both_stations_are_asked_about(
     assert [cell.value for cell in dialog.cells[0]] == ["Keep alignment C.", "The left foot drags."]
     qtbot.waitUntil(lambda: report.comment.toPlainText() == "The left foot drags.")
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
-    sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).comment == "Keep alignment C.")
+    settle(qtbot, ours, other, lambda: other.session.comment == "Keep alignment C.")
     qtbot.waitUntil(lambda: report.comment.toPlainText() == "Keep alignment C.")
     assert ("comment", "", "The left foot drags.", False) in other.history()
 
@@ -258,10 +262,9 @@ def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_
     dialog = dialog_of(qtbot, wizard)
     assert [cell.value for cell in dialog.cells[0]] == ["reversed by hand", "confirmed by hand"]
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
-    sessions, session_id = other.library.sessions, other.session_id
     required = {Joint.LEFT_KNEE: -1, Joint.RIGHT_KNEE: -1}
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).details.turned_sign == required)
-    assert sessions.get(session_id).details.zero_rad == {Joint.LEFT_ANKLE: np.deg2rad(5)}
+    settle(qtbot, ours, other, lambda: other.session.details.turned_sign == required)
+    assert other.session.details.zero_rad == {Joint.LEFT_ANKLE: np.deg2rad(5)}
     qtbot.waitUntil(lambda: ours.details.turned_sign == required)
 
 
@@ -271,9 +274,8 @@ def test_a_limit_stated_here_does_not_take_back_one_stated_there(
     other.say_of_session({"without_ankle.left": True})
     ours.record.set_limits(replace(ours.record.limits, cannot_stand=True))
     required = Limits(frozenset({Side.LEFT}), cannot_stand=True)
-    sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == required == ours.record.limits)
-    assert (sessions.get(session_id).limits, ours.record.limits) == (required, required)
+    settle(qtbot, ours, other, lambda: other.session.limits == required == ours.record.limits)
+    assert (other.session.limits, ours.record.limits) == (required, required)
 
 
 def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_asks_again(
@@ -330,14 +332,9 @@ def test_sides_swapped_at_both_stations_are_swapped_once_and_taken_back_once(
     swapped = {Site.LEFT_THIGH: WORN[Site.RIGHT_THIGH], Site.RIGHT_THIGH: WORN[Site.LEFT_THIGH]}
     seen = {walk.id: walk.stored.placement.id for walk in ours.recordings.walks if walk.stored.placement}
     other.library.edits.placement(other.session_id, seen, [([other.walk_id], swapped)])
-
-    def worn() -> object:
-        stored = other.library.recordings.find(other.walk_id)
-        return stored.placement.sensors if stored is not None and stored.placement is not None else None
-
     with qtbot.waitSignal(ours.recordings.changed):
         ours.worn.swap_sides()
-    assert worn() == swapped
+    assert present(other.stored_walk.placement).sensors == swapped
 
 
 def test_nothing_is_asked_while_the_window_is_locked_and_all_of_it_after(
@@ -365,33 +362,23 @@ def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_as
     qtbot.waitUntil(lambda: other.reported.height_m == 1.82)
 
 
-def report_of(wizard: Wizard) -> ReportStep:
-    """The last step, in sight."""
-    step = wizard.steps[StepId.REPORT]
-    assert isinstance(step, ReportStep)
-    wizard.shell.add_page(step.id, step.page)
-    wizard.go_to(StepId.REPORT)
-    return step
-
-
 def test_words_of_the_report_saved_as_the_session_is_left_are_there_when_it_is_opened_again(
     qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
 ) -> None:
     """Typed on while the first were being saved, they are saved after the session was left: nobody else's words."""
     report = report_of(wizard).page.report
+    wizard.go_to(StepId.REPORT)
     for words in ("Keep", "Keep alignment C."):
         report.comment.setPlainText(words)
         report.editor.flush()
     wizard.show_session(other.session_id)
-    visit = wizard.visit
-    assert visit is not None
+    visit = present(wizard.visit)
     assert visit is not ours
     ear = Ear(visit)
     qtbot.waitUntil(lambda: visit.session is not None)
     assert visit.record.comment == "Keep alignment C."
     visit.record.set_turned(Joint.LEFT_KNEE, -1)
-    sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, visit, other, lambda: bool(sessions.get(session_id).details.turned_sign) and not visit.is_saving)
+    settle(qtbot, visit, other, lambda: bool(other.session.details.turned_sign) and not visit.is_saving)
     assert (ear.received, wizard.asked.dialog) == ([], None)
 
 
@@ -399,6 +386,7 @@ def test_words_typed_after_a_refusal_are_nobody_elses(
     qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     report = report_of(wizard).page.report
+    wizard.go_to(StepId.REPORT)
     with monkeypatch.context() as patched:
         patched.setattr(SharedEdits, "session", _refuse)
         with qtbot.waitSignal(ours.record.refused):
@@ -406,8 +394,7 @@ def test_words_typed_after_a_refusal_are_nobody_elses(
             report.editor.flush()
     report.comment.setPlainText("Keep alignment C.")
     report.editor.flush()
-    sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).comment == "Keep alignment C.")
+    settle(qtbot, ours, other, lambda: other.session.comment == "Keep alignment C.")
     assert wizard.asked.dialog is None
 
 

@@ -29,25 +29,17 @@ from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
+from tests.app.wizard.present import present
 
 
 @pytest.fixture(autouse=True)
 def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
-
-
-@pytest.fixture
-def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
-    """A visit with sensors on, whose recordings nobody evaluates."""
-    monkeypatch.setattr(visit, "evaluate", lambda: None)
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 50)
-    begin(qtbot, visit, worn)
-    return visit
 
 
 def start_walk(qtbot: QtBot, visit: Visit) -> None:
-    acquisition = visit.sensors.acquisition
-    assert acquisition is not None
+    acquisition = present(visit.sensors.acquisition)
     acquisition.ask(RecordingKind.WALKING)
     with qtbot.waitSignal(visit.recordings.begun):
         visit.recordings.begin(acquisition, RecordingKind.WALKING)
@@ -55,8 +47,7 @@ def start_walk(qtbot: QtBot, visit: Visit) -> None:
 
 def is_whole(recording: SessionRecording, seconds: float) -> bool:
     """Whether each sensor has that much without a gap longer than two samples."""
-    assert recording.read_back is not None
-    blocks = recording.read_back.imu.values()
+    blocks = present(recording.read_back).imu.values()
     steps_s = [float((block.time_s[1:] - block.time_s[:-1]).max()) for block in blocks]
     return (
         len(steps_s) == len(LEG_SITES) and max(steps_s) < 0.05 and all(block.time_s[-1] >= seconds for block in blocks)
@@ -77,8 +68,7 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     assert recordings.is_recording
     qtbot.waitUntil(lambda: len(stated) == 2)  # by the journal, and by who looks for the folder
     assert controller.state is not None
-    assert controller.state.library.shelter is not None
-    assert all(str(controller.state.library.shelter.folder) in then for _, then in stated)
+    assert all(str(present(controller.state.library.shelter).folder) in then for _, then in stated)
     qtbot.wait(200)
     refused: list[tuple[str, str]] = []
     recordings.refused.connect(lambda *words: refused.append(words))
@@ -157,8 +147,7 @@ def open_window(
 
 
 def log_in(qtbot: QtBot, window: MainWindow) -> None:
-    assert window.entry is not None
-    page = window.entry.log_in
+    page = present(window.entry).log_in
     qtbot.waitUntil(lambda: page.isVisible() and page.operator.count() == 1)
     page.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
@@ -179,12 +168,9 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     folder, elsewhere = tmp_path / "library", tmp_path / "renamed"
     window = open_window()
     log_in(qtbot, window)
-    assert window.home is not None
-    window.home.session_requested.emit(None)
-    wizard = window.wizard
-    assert wizard is not None
-    visit = wizard.visit
-    assert visit is not None
+    present(window.home).session_requested.emit(None)
+    wizard = present(window.wizard)
+    visit = present(wizard.visit)
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 100)
     begin(qtbot, visit, worn)
     wizard._go_to(StepId.WALKING)
@@ -209,11 +195,9 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     assert not folder.exists()
     elsewhere.rename(folder)
     log_in(qtbot, again)
-    home = again.home
-    assert home is not None
+    home = present(again.home)
     qtbot.waitUntil(lambda: "while the library was missing" in home.banner.text)
-    assert again.controller.state is not None
-    library = again.controller.state.library.library
+    library = present(again.controller.state).library.library
     (line,) = library.sessions.list()
     recordings = library.sessions.get(line.id).recordings
     assert [(one.details.name, one.state) for one in recordings] == [

@@ -18,6 +18,7 @@ from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 
 
@@ -37,8 +38,7 @@ def type_in(step: PatientStep, patient: Patient) -> None:
 
 
 def test_going_on_waits_until_the_library_has_the_patient(qtbot: QtBot, visit: Visit, step: PatientStep) -> None:
-    verb = step.bar().primary
-    assert verb is not None
+    verb = present(step.bar().primary)
     assert not verb.is_enabled
     type_in(step, Patient(code="DEMO-7", prosthetic_side="left"))
     assert step.note == "Left prosthetic"
@@ -100,15 +100,13 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
 def test_enter_takes_the_set_up_of_the_last_visit_and_without_one_goes_on_to_attach_sensors(
     qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
 ) -> None:
-    primary = step.bar().primary
-    assert primary is not None
+    primary = present(step.bar().primary)
     assert (primary.text, primary.key) == ("Attach sensors", "Enter")
     controller.run(make_with_visit, None, None, step)
     step.page.open_pressed.emit("DEMO-10")
 
     def offered() -> tuple[str, str]:
-        primary = step.bar().primary
-        assert primary is not None
+        primary = present(step.bar().primary)
         return primary.text, primary.key
 
     qtbot.waitUntil(lambda: offered() == ("Use last visit's set-up", "Enter"))
@@ -165,8 +163,7 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_again(
     assert not visit.patient.is_saved
     with qtbot.waitSignal(step.done):
         press(step)
-    stored = visit.patient.stored
-    assert stored is not None
+    stored = present(visit.patient.stored)
     assert visit.patient.details == stored.details == step.page.draft.patient
     assert (stored.details.birth_year, stored.details.mass_kg) == (1982, 70.0)
 

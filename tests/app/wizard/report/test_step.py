@@ -42,18 +42,28 @@ from tests.app.wizard.pressing import press
 from tests.app.wizard.report.test_page import png
 from tests.simulated import analysis_of
 
+Stated = list[tuple[str, str]]  # what, and the remedy
+PAGES, DRAFT = ReportPreview.pages, ReportPreview.comment_draft
+
 
 @pytest.fixture(scope="module")
 def analysis(simulated_session: Session) -> Analysis:
     return analysis_of(simulated_session)
 
 
-@pytest.fixture
-def blank_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(autouse=True)
+def _blank_pages(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pages and a draft at once, where a test is about neither: to set them takes half a second."""
     blank = [png(40.0)] * 4
     monkeypatch.setattr(ReportPreview, "pages", lambda *_: blank)
-    monkeypatch.setattr(ReportPreview, "comment_draft", lambda *_: "The left knee flexes 54°.")
+    monkeypatch.setattr(ReportPreview, "comment_draft", lambda *_: "A draft.")
+
+
+@pytest.fixture
+def typeset(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages and a draft as they are."""
+    monkeypatch.setattr(ReportPreview, "pages", PAGES)
+    monkeypatch.setattr(ReportPreview, "comment_draft", DRAFT)
 
 
 @pytest.fixture
@@ -64,9 +74,9 @@ def blank_documents(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def reported(step: ReportStep) -> list[tuple[str, str]]:
+def reported(step: ReportStep) -> Stated:
     """What the step states above its page, from now on."""
-    stated: list[tuple[str, str]] = []
+    stated: Stated = []
     step.reported.connect(lambda what, remedy: stated.append((what, remedy)))
     return stated
 
@@ -102,6 +112,7 @@ def step(
     step.leave()
 
 
+@pytest.mark.usefixtures("typeset")
 def test_pages_are_shown_and_made_again_with_the_words(
     qtbot: QtBot, step: ReportStep, visit: Visit, library: Library
 ) -> None:
@@ -114,6 +125,7 @@ def test_pages_are_shown_and_made_again_with_the_words(
     qtbot.waitUntil(lambda: library.sessions.get(session_id).comment == "Keep alignment C.")
 
 
+@pytest.mark.usefixtures("typeset")
 def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_with_who_confirmed_it(
     qtbot: QtBot, step: ReportStep, visit: Visit, library: Library
 ) -> None:
@@ -134,7 +146,6 @@ def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_wit
     assert is_confirmed(draft, library.sessions.get(session_id).comment_confirmed)
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_words_changed_after_they_were_confirmed_are_not_printed_until_they_are_again(
     qtbot: QtBot, step: ReportStep
 ) -> None:
@@ -153,7 +164,6 @@ def test_words_changed_after_they_were_confirmed_are_not_printed_until_they_are_
     assert request_of(step).comment == "Keep alignment C. Pain."
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot: QtBot, step: ReportStep) -> None:
     editor = step.page.report.editor
     qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT)
@@ -163,7 +173,6 @@ def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot:
     assert (editor.words, editor.state) == ("", CommentState.EMPTY)
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_a_confirmation_that_the_library_refuses_prints_nothing(
     qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -181,7 +190,6 @@ def request_of(step: ReportStep) -> ReportRequest:
     return present(step.request())
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_save_report_writes_one_pdf_and_nothing_beside_it(
     qtbot: QtBot, step: ReportStep, visit: Visit, library: Library, tmp_path: Path
 ) -> None:
@@ -197,9 +205,8 @@ def test_save_report_writes_one_pdf_and_nothing_beside_it(
     assert session_id in library.audit.reported([session_id])
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_a_report_replaces_no_other_file_and_is_not_written_into_the_library(
-    qtbot: QtBot, step: ReportStep, visit: Visit, reported: list[tuple[str, str]], tmp_path: Path
+    qtbot: QtBot, step: ReportStep, visit: Visit, reported: Stated, tmp_path: Path
 ) -> None:
     folder = present(visit.controller.state).library.folder
     other = tmp_path / "notes.pdf"
@@ -213,7 +220,7 @@ def test_a_report_replaces_no_other_file_and_is_not_written_into_the_library(
     assert step.state is StepState.TODO
 
 
-@pytest.mark.usefixtures("blank_pages", "blank_documents")
+@pytest.mark.usefixtures("blank_documents")
 def test_the_letter_is_exported_where_it_was_chosen(
     qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
 ) -> None:
@@ -228,7 +235,6 @@ def test_the_letter_is_exported_where_it_was_chosen(
     assert "Your walking" in text
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
     qtbot: QtBot, step: ReportStep, visit: Visit, library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -264,14 +270,8 @@ def proposed(step: ReportStep) -> list[str]:
     return [Path(path).name for path in dialog.selectedFiles()]
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_the_chosen_files_are_saved(
-    qtbot: QtBot,
-    step: ReportStep,
-    visit: Visit,
-    reported: list[tuple[str, str]],
-    tmp_path: Path,
-    request: pytest.FixtureRequest,
+    qtbot: QtBot, step: ReportStep, visit: Visit, reported: Stated, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     out = tmp_path / "results"
     step.page.report.formats.choose(["csv"])
@@ -292,13 +292,9 @@ def test_the_chosen_files_are_saved(
     assert step.bar().note == "Saved as more."
 
 
-@pytest.mark.usefixtures("blank_pages", "blank_documents")
+@pytest.mark.usefixtures("blank_documents")
 def test_a_file_that_was_not_written_is_named_with_its_reason(
-    qtbot: QtBot,
-    step: ReportStep,
-    reported: list[tuple[str, str]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    qtbot: QtBot, step: ReportStep, reported: Stated, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lines = ["walk 1, mot: No angle of it can be given as a pose."]
     monkeypatch.setattr(writing, "export_from_library", lambda *_, **__: lines)
@@ -365,7 +361,6 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert patient.details.code not in stated.replace(shown["patient"], "")  # which begins as the code does
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
     press(step, "Export data")
@@ -373,7 +368,6 @@ def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, st
     assert step.page.findChild(LeavingDialog) is None
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Visit, analysis: Analysis) -> None:
     assert present(step.bar().primary).is_enabled
     moved = tuple(one for one in analysis.recordings if one.kind is RecordingKind.FREE_MOTION)
@@ -384,7 +378,6 @@ def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Vi
     assert step.page.currentWidget() is step.page.sentence
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     step.page.report.formats.choose(["fhir"])
     press(step, "Export data")
@@ -428,9 +421,8 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     assert first.startswith("2,")
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
-    qtbot: QtBot, step: ReportStep, reported: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: ReportStep, reported: Stated, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sheets = step.page.report.sheets
     qtbot.waitUntil(lambda: sheets.count >= 4)
@@ -449,9 +441,8 @@ def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
     assert reported[-1] == ("", "")
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparison_and_nothing_to_save(
-    qtbot: QtBot, step: ReportStep, reported: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: ReportStep, reported: Stated, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
         raise LibraryError("the visit cannot be read", "Choose another")
@@ -511,7 +502,6 @@ def test_a_second_session_of_a_day_is_proposed_a_folder_of_its_own(tmp_path: Pat
     assert free_name(tmp_path, "P-1_2026-11-23") == "P-1_2026-11-23_3"
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_pictures_of_the_video_are_in_the_report_only_where_somebody_chose_them(
     qtbot: QtBot, step: ReportStep, visit: Visit, analysis: Analysis
 ) -> None:
@@ -531,7 +521,6 @@ def test_pictures_of_the_video_are_in_the_report_only_where_somebody_chose_them(
     assert request_of(step).key_frames == ()
 
 
-@pytest.mark.usefixtures("blank_pages")
 def test_pictures_are_offered_also_where_the_results_come_after_the_video(
     step: ReportStep, visit: Visit, analysis: Analysis
 ) -> None:

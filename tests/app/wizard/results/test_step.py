@@ -34,6 +34,7 @@ from core.verdicts.measurement_error import ErrorSource
 from devices.simulation.walker import DEMONSTRATION
 from tests.app.library_answers import asked
 from tests.app.room import words_cut
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 from tests.simulated import session_of
 
@@ -73,8 +74,7 @@ def step(qtbot: QtBot, qapp: QApplication, visit: Visit, session_id: UUID) -> Re
 
 
 def walk_of(visit: Visit) -> RecordingAnalysis:
-    analysis = visit.evaluation.analysis
-    assert analysis is not None
+    analysis = present(visit.evaluation.analysis)
     return next(recording for recording in analysis.recordings if recording.gait)
 
 
@@ -100,9 +100,7 @@ def test_results_are_on_the_screen_quickly_once_they_are_known(visit: Visit, ste
 
 def test_results_that_are_made_ready_ahead_open_with_the_walk(visit: Visit, step: ResultsStep) -> None:
     """The free motion is analysed first; who comes after a walk wants to see that walk."""
-    session, analysis = visit.evaluation.session, visit.evaluation.analysis
-    assert session is not None
-    assert analysis is not None
+    session, analysis = present(visit.evaluation.session), present(visit.evaluation.analysis)
     ahead = ResultsStep(visit)
     ahead.page.results()
     of_motion = (one for one in analysis.recordings if one.kind is not RecordingKind.WALKING)
@@ -124,8 +122,7 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
     with qtbot.waitSignal(step.offered), qtbot.waitSignal(visit.evaluation.done):
         page.joint_rows[Joint.LEFT_KNEE].turned.click()
     np.testing.assert_allclose(angle_of(visit, Joint.LEFT_KNEE), -before, atol=1e-9)
-    analysis = visit.evaluation.analysis
-    assert analysis is not None
+    analysis = present(visit.evaluation.analysis)
     assert "sign_turned" in {finding.key for finding in analysis.findings}
     with qtbot.waitSignal(visit.evaluation.done):
         step.undo()
@@ -148,8 +145,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     ):
         row.kept.click()
     assert offered.args == ["Walk 1 is excluded."]
-    assert visit.evaluation.analysis is not None
-    assert not any(recording.gait for recording in visit.evaluation.analysis.recordings)
+    assert not any(recording.gait for recording in present(visit.evaluation.analysis).recordings)
     with qtbot.waitSignal(visit.evaluation.done):
         step.undo()
     assert walk_of(visit).gait
@@ -173,8 +169,7 @@ def test_an_earlier_visit_is_compared_as_worn_again(qtbot: QtBot, visit: Visit, 
     compare = step.page.results().compare
     with qtbot.waitSignal(visit.earlier_read):
         compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
-    found = compare.comparison
-    assert found is not None
+    found = present(compare.comparison)
     assert [(part.letter, part.name) for part in found.parts] == [("1", "2026-09-01"), ("2", "2026-10-01")]
     knees = [row for row in found.rows if row.measure.column == "knee_range_deg"]
     assert [row.difference.difference for row in knees] == [0.0, 0.0]
@@ -209,8 +204,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     qtbot: QtBot, visit: Visit, step: ResultsStep, controller: LibraryController, tmp_path: Path
 ) -> None:
     step.page.results().quality.how_found.click()
-    page = step.page.behind.found
-    assert page is not None
+    page = present(step.page.behind.found)
     assert step.page.currentWidget() is page
     assert not step.bar().has_back
     qtbot.waitUntil(page.save.isEnabled)
@@ -218,8 +212,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     assert not page.save.isEnabled()
     qtbot.waitUntil(page.save.isEnabled)
     page.save.click()
-    dialog = page.findChild(QFileDialog)
-    assert dialog is not None
+    dialog = present(page.findChild(QFileDialog))
     # its files name no patient, so neither does their folder
     assert [Path(one).name for one in dialog.selectedFiles()] == ["session_how-found"]
     with qtbot.waitSignal(step.reported):
@@ -253,8 +246,7 @@ def test_what_is_stated_of_the_legs_afterwards_is_in_the_results_when_they_are_l
     qtbot: QtBot, visit: Visit, step: ResultsStep
 ) -> None:
     def nature() -> JointNature:
-        analysis = visit.evaluation.analysis
-        assert analysis is not None
+        analysis = present(visit.evaluation.analysis)
         return analysis.calibrations[-1].joints[Joint.LEFT_KNEE].nature
 
     computed: list[object] = []
@@ -326,8 +318,7 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
     with qtbot.waitSignals([again.resumed, again.evaluation.done]):
         again.resume(session_id)
     assert left_out_by_hand(walk_of(again).gait[Side.LEFT]) == 2
-    assert again.evaluation.analysis is not None
-    assert "strides_left_out_by_hand" in {finding.key for finding in again.evaluation.analysis.findings}
+    assert "strides_left_out_by_hand" in {finding.key for finding in present(again.evaluation.analysis).findings}
     assert not computed
     again.finish()
 
@@ -356,8 +347,6 @@ def test_no_word_of_the_corrections_is_cut(step: ResultsStep) -> None:
 def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
     qtbot: QtBot, visit: Visit, step: ResultsStep, controller: LibraryController, tmp_path: Path
 ) -> None:
-    analysis = visit.evaluation.analysis
-    assert analysis is not None
     walk = walk_of(visit)
     joints = [joint for joint in LEG_JOINTS if joint in walk.joints]
     columns = [np.rad2deg(walk.joints[joint].angle_rad) for joint in joints]
@@ -369,8 +358,7 @@ def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
     reference = tmp_path / "optics.csv"
     reference.write_text("\n".join([f"time_s,{','.join(joints)}", *rows, ""]), encoding="utf-8")
     step.page.results().quality.agreement.click()
-    page = step.page.behind.agreement
-    assert page is not None
+    page = present(step.page.behind.agreement)
     assert step.page.currentWidget() is page
     page.choose.click()
     (chooser,) = page.findChildren(QFileDialog)

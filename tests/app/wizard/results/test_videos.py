@@ -38,6 +38,7 @@ from devices.files.video_file import VideoPiece
 from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.library_answers import asked
 from tests.app.wizard.conftest import PASSPHRASE
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 from tests.app.wizard.results.test_step import one_walk, session_id, step, walk_of
 from tests.devices.files.videos import write_video
@@ -54,8 +55,7 @@ FRAMES = 45  # as `write_video` makes them
 def clip(qtbot: QtBot, controller: LibraryController, visit: Visit, step: ResultsStep, tmp_path: Path) -> StoredClip:
     """Imported to the walk in sight, with consent, and synchronised by hand."""
     (walk,) = visit.recordings.walks
-    session = visit.session
-    assert session is not None
+    session = present(visit.session)
     path = write_video(tmp_path / "walk.mp4")
 
     def bring_in(opened: OpenedLibrary) -> StoredClip | None:
@@ -104,9 +104,7 @@ def begin_export(step: ResultsStep, path: Path, answer: str = "faces") -> None:
 
 
 def files_of(visit: Visit) -> list[Path]:
-    state = visit.controller.state
-    assert state is not None
-    return list(state.library.videos.glob("*.journal"))
+    return list(present(visit.controller.state).library.videos.glob("*.journal"))
 
 
 def words(step: ResultsStep) -> list[str]:
@@ -147,17 +145,11 @@ def test_a_file_that_is_no_video_is_refused_and_leaves_nothing(
 ) -> None:
     path = tmp_path / "walk.mp4"
     path.write_bytes(b"no video at all" * 1000)
-    visit.clips.give_consent()
-    qtbot.waitUntil(lambda: visit.clips.has_consent)
-    stated: list[tuple[str, str]] = []
-    step.reported.connect(lambda *both: stated.append(both))
-    press(step, "Import video")
-    step.page.findChildren(QFileDialog)[0].filesSelected.emit([str(path)])
+    stated = sentences_of(step)
+    begin_import(qtbot, visit, step, path)
     qtbot.waitUntil(lambda: len(stated) > 1)
     assert "walk.mp4" in " ".join(stated[-1])
-    state = visit.controller.state
-    assert state is not None
-    assert list(state.library.videos.glob("*.journal")) == []
+    assert files_of(visit) == []
 
 
 def test_what_leaves_is_asked_about_written_and_noted(
@@ -183,13 +175,11 @@ def test_what_leaves_is_asked_about_written_and_noted(
 def test_a_deleted_video_is_gone_at_once(qtbot: QtBot, visit: Visit, clip: StoredClip, step: ResultsStep) -> None:
     step.page.results().show_video.click()
     press(step, "Delete video")
-    state = visit.controller.state
-    assert state is not None
-    assert list(state.library.videos.glob("*.journal"))
+    assert files_of(visit)
     dialog_of(step).answers["delete"].click()
     qtbot.waitUntil(lambda: not step.page.results().video.has_clips)
     qtbot.waitUntil(lambda: not visit.clips.stored)
-    assert list(state.library.videos.glob("*.journal")) == []
+    assert files_of(visit) == []
 
 
 def test_lock_drops_what_was_shown(visit: Visit, clip: StoredClip, step: ResultsStep) -> None:
@@ -238,8 +228,7 @@ def test_a_cameras_delay_is_found_by_the_motion(
     (moved,) = (one for one in simulate(DEMONSTRATION).moved if one.name == walk_of(visit).name)
     drawn = render(moved, Scene("oblique", jitter_s=0.0), 0.0, float(moved.legs[Side.LEFT].time_s[-1]))
     (walk,) = visit.recordings.walks
-    session, delay_s = visit.session, 0.12
-    assert session is not None
+    session, delay_s = present(visit.session), 0.12
 
     def write(opened: OpenedLibrary) -> StoredClip | None:
         opened.library.clips.give_consent(session.patient_id)
@@ -260,8 +249,7 @@ def test_a_cameras_delay_is_found_by_the_motion(
         lambda: [clip.sync.by for clips in visit.clips.stored.values() for clip in clips if clip.sync] == by_motion,
     )
     ((found,),) = visit.clips.stored.values()
-    assert found.sync is not None
-    assert abs(found.sync.offset_s + delay_s) < 2 / 30
+    assert abs(present(found.sync).offset_s + delay_s) < 2 / 30
     video = step.page.results().video
     qtbot.waitUntil(lambda: video.has_clips)
     step.page.results().show_video.click()

@@ -20,6 +20,7 @@ from devices.emulators.csv_lines import LineVoice
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.live import SourceRefusedError
 from devices.transport.ports import PortInfo
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 
 
@@ -74,8 +75,7 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     assert form.isVisible()
     assert step.telling.columns == EMULATED
     assert form.notice.text.startswith("200 samples per second, 9.8 m/s²: plausible.")
-    primary = step.bar().primary
-    assert primary is not None
+    primary = present(step.bar().primary)
     assert (primary.text, primary.is_enabled) == ("Use these columns", True)
     with qtbot.waitSignal(visit.refused) as refused:
         press(step)
@@ -97,16 +97,14 @@ def test_what_cannot_be_is_stated(qtbot: QtBot, step: SensorsStep) -> None:
     step.telling.tick()
     assert "each once" in form.notice.text
     assert step.telling.columns is None
-    primary = step.bar().primary
-    assert primary is not None
+    primary = present(step.bar().primary)
     assert not primary.is_enabled
 
 
 def test_an_axis_can_be_turned_round(qtbot: QtBot, step: SensorsStep) -> None:
     form = asked(qtbot, step)
     form.meanings[2].setCurrentIndex(form.meanings[2].findData(f"-{Meaning.RATE_Y}"))
-    columns = step.telling.columns
-    assert columns is not None
+    columns = present(step.telling.columns)
     assert columns.signs == (1, -1, 1, 1, 1, 1)
 
 

@@ -13,6 +13,7 @@ from devices.dot.messages import SyncResult, start_recording
 from devices.dot.samples import DRIVER
 from devices.emulators.dot_memory import RECORDING
 from tests.app.wizard.emulated_dots import dot_choice, has_asked_all, rows_of
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -91,8 +92,7 @@ def test_synchronising_is_reported_step_by_step_and_gives_sensors_on_one_clock(
     shares = [one.share for one in shown if one.share is not None and one.lines]
     assert shares == sorted(shares)
     assert asked.cannot_leave == ""
-    dots = visit.sensors.dots
-    assert dots is not None
+    dots = present(visit.sensors.dots)
     assert dots.are_one_at(60)
     assert [one.info.clock for one in visit.sensors.placed().values()] == []
     assert visit.is_simulated
@@ -112,8 +112,7 @@ def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
     assert [other.text for other in asked.bar().others] == ["Go on without DOT 0002"]
     with qtbot.waitSignal(visit.sensors.opened):
         press(asked, "Go on without DOT 0002")
-    assert visit.sensors.acquisition is not None
-    assert visit.sensors.acquisition.sensors == ("DOT 0001",)
+    assert present(visit.sensors.acquisition).sensors == ("DOT 0001",)
 
 
 def test_whoever_cancels_comes_back_to_the_list_and_nobody_stays_synchronised(

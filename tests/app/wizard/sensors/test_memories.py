@@ -23,6 +23,7 @@ from devices.dot.messages import start_recording
 from devices.dot.samples import DRIVER
 from devices.emulators.dot import EmulatedDot
 from tests.app.wizard.emulated_dots import dot_choice, open_dots, rows_of
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -68,9 +69,8 @@ def wait(qtbot: QtBot, step: SensorsStep) -> None:
 
 def walk_in_memory(qtbot: QtBot, visit: Visit, *, is_fetched: bool) -> None:
     sensors, recordings = visit.sensors, visit.recordings
-    assert sensors.dots is not None
     assert sensors.acquisition is not None
-    sensors.dots.make_ready_to_record()
+    present(sensors.dots).make_ready_to_record()
     recordings.begin(sensors.acquisition, RecordingKind.WALKING, "Shoes")
     qtbot.waitUntil(lambda: recordings.has_begun)
     qtbot.wait(60)
@@ -89,8 +89,7 @@ def test_empty_memories_are_reported_and_live_comes_back(qtbot: QtBot, opened: S
     press(opened)
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle)
     assert opened.page.memories.isHidden()
-    assert visit.sensors.dots is not None
-    assert visit.sensors.dots.are_one_at(60), "they were not synchronised anew"
+    assert present(visit.sensors.dots).are_one_at(60), "they were not synchronised anew"
 
 
 def test_what_is_kept_is_erased_after_a_second_press(
@@ -100,8 +99,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
     look(qtbot, opened)
     assert reported_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
     bar = opened.bar()
-    assert bar.primary is not None
-    assert bar.primary.text == "Back to the sensors"
+    assert present(bar.primary).text == "Back to the sensors"
     assert [other.text for other in bar.others] == ["Erase sensor memory"]
     assert bar.quiet == ()  # it is offered once
     press(opened, "Erase sensor memory")
@@ -145,15 +143,13 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     look(qtbot, opened)
     assert reported_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
     bar = opened.bar()
-    assert bar.primary is not None
-    assert bar.primary.text == "Fetch walk"
+    assert present(bar.primary).text == "Fetch walk"
     press(opened)
     wait(qtbot, opened)
     qtbot.waitUntil(lambda: len(recordings.walks) == 2)
     fetched = recordings.walks[1]
     assert fetched.details.condition == "Shoes"
-    assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [
+    assert [len(block) for block in present(fetched.read_back).imu.values()] == [
         len(dot.memory.files[0].ticks) for dot in radio.dots
     ]
     assert reported_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
@@ -162,8 +158,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
 def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lost(
     qtbot: QtBot, opened: SensorsStep, visit: Visit, radio: FastRadio
 ) -> None:
-    assert visit.sensors.dots is not None
-    visit.sensors.dots.fall_silent()
+    present(visit.sensors.dots).fall_silent()
     for dot in radio.dots:
         left_by_itself(dot)
     qtbot.wait(40)
@@ -172,8 +167,7 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     look(qtbot, opened)
     assert reported_lines(opened) == [["2 sensors", "Not recorded with this library."]]
     bar = opened.bar()
-    assert bar.primary is not None
-    assert bar.primary.text == "Back to the sensors"
+    assert present(bar.primary).text == "Back to the sensors"
     press(opened, "Erase sensor memory")
     assert "1 recording is not saved in this library and would be lost." in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now, losing unsaved data"]
@@ -193,8 +187,7 @@ def test_a_sensor_that_is_out_of_reach_is_reported_and_asked_again(
     assert "A sensor is out of range." in opened.page.memories.notice.text
     assert opened.page.memories.title == "The content of the sensor memory is unknown"
     bar = opened.bar()
-    assert bar.primary is not None
-    assert bar.primary.text == "Try again"
+    assert present(bar.primary).text == "Try again"
     assert [quiet.text for quiet in bar.quiet] == ["Back to the sensors"]
     radio.dots[1].faults.unreachable_until_ns = 0
     press(opened)

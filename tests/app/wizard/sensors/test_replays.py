@@ -20,6 +20,7 @@ from core.samples import SensorInfo
 from core.session import Patient, RecordingKind, Session
 from devices.files.session_folder import write_session
 from tests.app.library_answers import asked
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 from tests.safety.live_material import numbered, numbered_session
 
@@ -89,8 +90,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     with qtbot.waitSignal(visit.sensors.opened):
         press(step)
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
-    assert visit.sensors.choice is not None
-    assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
+    assert present(visit.sensors.choice).name == "Replay of P-7, 24 Oct 2026"
     found = asked(qtbot, controller, lambda opened: offered(opened, line.id))
     assert found == [], "neither the session itself, nor one without recordings"
 
@@ -98,8 +98,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
 def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
     step.page.source_chosen.emit(REPLAY)
     step.page.stored.folder.click()
-    dialog = step.stored.dialog
-    assert dialog is not None
+    dialog = present(step.stored.dialog)
     assert dialog.fileMode() is QFileDialog.FileMode.Directory
     with qtbot.waitSignal(visit.sensors.opened):
         dialog.fileSelected.emit(str(folder))
@@ -141,8 +140,7 @@ def test_whoever_chooses_other_sensors_meanwhile_has_those(
         step.page.source_chosen.emit("fast")
     assert step.page.list.isVisible()
     qtbot.wait(300)  # longer than it takes to read the folder
-    assert visit.sensors.choice is not None
-    assert visit.sensors.choice.key == "fast"
+    assert present(visit.sensors.choice).key == "fast"
 
 
 def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: Visit) -> None:

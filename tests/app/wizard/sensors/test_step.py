@@ -22,6 +22,7 @@ from core.body import Site
 from core.session import Session
 from devices.live import SourceRefusedError
 from devices.simulation.replay import ReplaySource
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 
 TICKS_FOR_ROWS = 24  # of which three times rows and eight times traces are shown
@@ -60,8 +61,7 @@ def test_sensors_are_placed_by_keys_and_reported_to_the_library(
     open_source(qtbot, visit, step)
     page = step.page
     assert set(page.list.rows) == set(worn)
-    verb = step.bar().primary
-    assert verb is not None
+    verb = present(step.bar().primary)
     assert not verb.is_enabled
     for sensor, site in worn.items():
         page.list.select(sensor)
@@ -69,8 +69,7 @@ def test_sensors_are_placed_by_keys_and_reported_to_the_library(
     assert visit.sensors.site_of == worn
     assert step.note == "6 of 6 assigned"
     assert step.state is StepState.DONE
-    verb = step.bar().primary
-    assert verb is not None
+    verb = present(step.bar().primary)
     assert verb.is_requested
     with qtbot.waitSignal(step.done):
         press(step)
@@ -114,8 +113,7 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
     source.silence(foot)
     qtbot.waitUntil(lambda: tick(step) or step.state is StepState.ATTENTION)
     bar = step.bar()
-    assert bar.primary is not None
-    assert bar.primary.text == "Reconnect R foot"
+    assert present(bar.primary).text == "Reconnect R foot"
     assert [verb.text for verb in bar.others] == ["Go on without right ankle"]
     assert "R foot: no signal for" in step.page.notice.text
     source.wake(foot)
@@ -131,8 +129,7 @@ def test_left_to_the_motion_goes_on_without_places(qtbot: QtBot, visit: Visit, s
     step.page.ways.segments[2].click()
     assert step.note == "from free motion"
     assert step.state is StepState.DONE
-    verb = step.bar().primary
-    assert verb is not None
+    verb = present(step.bar().primary)
     assert verb.is_enabled
     assert step.page.place_selected(2)
     assert not visit.sensors.is_left_to_motion
@@ -311,8 +308,7 @@ def test_who_has_simulated_sensors_is_led_to_a_demonstration_patient(
         press(step, "Start with a demonstration patient")
     step.leave()
     qtbot.wait(50)
-    session = simulated_on_a_patient.session
-    assert session is not None
+    session = present(simulated_on_a_patient.session)
     assert session.placements == ()  # what sends nothing to be kept is worn nowhere
 
 

@@ -18,6 +18,7 @@ from core.body import Joint, Site
 from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 
 SPACE = Intent(KeyAction.RUN)
@@ -50,8 +51,7 @@ def phase(step: StandStillStep) -> StandPhase:
 def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStillStep) -> None:
     ticks(qtbot, step, lambda: len(step.page.view.movement_deg_s) == 6)
     assert phase(step) is StandPhase.READY
-    verb = step.bar().primary
-    assert verb is not None
+    verb = present(step.bar().primary)
     assert (verb.text, verb.key) == ("Start countdown", "Space")
 
 
@@ -61,10 +61,8 @@ def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
     with qtbot.waitSignal(step.done):
         assert step.on_intent(SPACE)
         ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
-    standing = visit.recordings.standing
-    assert standing is not None
-    assert standing.read_back is not None
-    for block in standing.read_back.imu.values():
+    standing = present(visit.recordings.standing)
+    for block in present(standing.read_back).imu.values():
         assert block.time_s[-1] - block.time_s[0] >= 3.0
     assert set(visit.rests) == set(worn)
     assert step.state is StepState.DONE
