@@ -12,6 +12,7 @@ from PySide6.QtGui import QColor, QFont, QGuiApplication, QImage, QScreen
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.patient_screen.patient_view import PatientView, figure, title_of
 from app.patient_screen.window import PatientWindow, Placing
@@ -59,10 +60,25 @@ def test_steps_that_reached_are_filled_and_others_hollow(window: PatientWindow) 
     assert [is_leg(image, x, 712) for x in middles] == [value >= 55 for value in TEN]
 
 
-def test_its_words_say_the_value_and_how_many_reached(window: PatientWindow) -> None:
+def test_the_words_say_what_is_shown(window: PatientWindow, snapshot: SnapshotAssertion) -> None:
+    views = {
+        "the value and how many reached": PatientView(KNEE, TEN),
+        "waiting for what can no longer be a target, though steps are counted": PatientView(steps=13, is_waiting=True),
+        "steps of a walk without a target": PatientView(steps=13),
+        "before the first step nothing is counted": PatientView(KNEE),
+        "neither a target nor a walk": PatientView(),
+    }
+    assert {case: view.in_words for case, view in views.items()} == snapshot
     window.show_view(PatientView(KNEE, TEN))
-    stated = "Left knee: bend it as the leg swings. Target 55°. Now 54°. Last 10 steps: 7 reached 55°."
-    assert window.accessibleName() == stated
+    assert window.accessibleName() == PatientView(KNEE, TEN).in_words
+
+
+def test_titles_name_their_leg_and_figures_have_their_unit_and_a_true_minus(snapshot: SnapshotAssertion) -> None:
+    sides = {measure: tuple(Side) if measure.has_side else () for measure in TargetMeasure}
+    assert {
+        **{f"{measure}, {side}": title_of(Target(measure, side, 50)) for measure in sides for side in sides[measure]},
+        **{str(measure): figure(-3, measure) for measure in TargetMeasure},
+    } == snapshot
 
 
 def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindow) -> None:
@@ -89,16 +105,6 @@ def test_while_the_patient_is_standing_it_waits_for_the_next_step_and_keeps_the_
     assert is_leg(picture(window), 400, 468)
 
 
-def test_what_can_no_longer_be_a_target_lets_the_patient_wait_though_steps_are_counted() -> None:
-    assert PatientView(steps=13, is_waiting=True).in_words == "One moment"
-    assert PatientView(steps=13).in_words == "13 steps so far"
-
-
-def test_before_the_first_step_nothing_is_counted() -> None:
-    assert PatientView(KNEE).in_words == "Left knee: bend it as the leg swings. Target 55°."
-    assert PatientView().in_words == "One moment"
-
-
 def test_without_a_target_the_steps_of_a_walk_are_shown_and_nobody_is_to_wait(window: PatientWindow) -> None:
     window.show_view(PatientView(steps=13))
     assert window.accessibleName() == "13 steps so far"
@@ -107,19 +113,6 @@ def test_without_a_target_the_steps_of_a_walk_are_shown_and_nobody_is_to_wait(wi
     assert picture(window) != shown
     window.show_view(PatientView(steps=None))
     assert window.accessibleName() == "One moment"
-
-
-@pytest.mark.parametrize("side", Side)
-@pytest.mark.parametrize("measure", [measure for measure in TargetMeasure if measure.has_side])
-def test_each_title_names_its_leg(measure: TargetMeasure, side: Side) -> None:
-    stated = title_of(Target(measure, side, 50))
-    assert stated.startswith("Left" if side is Side.LEFT else "Right")
-
-
-def test_figures_have_their_unit_and_a_true_minus() -> None:
-    assert figure(-3, TargetMeasure.FOOT_STRIKE) == "\N{MINUS SIGN}3°"
-    assert figure(96, TargetMeasure.STANCE_RATIO) == "96\N{NO-BREAK SPACE}%"
-    assert figure(110, TargetMeasure.CADENCE) == "110"
 
 
 @pytest.mark.parametrize("key", [Qt.Key.Key_Escape, Qt.Key.Key_F8])

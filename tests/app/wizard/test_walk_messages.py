@@ -1,10 +1,9 @@
 """What is stated about a walk: what is not counted for want of a sensor, when its angles come, and what it lacks."""
 
-import pytest
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.acquisition.memory_fetching import Lack
-from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import (
     few_strides_message,
@@ -16,63 +15,52 @@ from app.wizard.walk_messages import (
 from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
 from core.session import RecordingKind
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import record
 from tests.app.wizard.pressing import press
 
 FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
 ALL = frozenset(LEG_SITES)
 
 
-@pytest.mark.parametrize(
-    ("worn", "stated"),
-    [
-        (ALL, ""),
-        (ALL - FEET, "No foot sensors: strides are counted after the walk."),
-        (ALL - {Site.LEFT_FOOT}, "No left foot sensor: left strides are counted after the walk."),
-        ({Site.RIGHT_THIGH, Site.RIGHT_SHANK}, "No right foot sensor: right strides are counted after the walk."),
-        ({Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT}, ""),  # nobody asks for a leg that wears none
-    ],
-)
-def test_strides_that_are_not_counted_live_are_reported(worn: frozenset[Site], stated: str) -> None:
-    assert no_foot_message(worn)[0] == stated
+def test_strides_that_are_not_counted_live_are_reported_and_angles_promised_for_when_they_come(
+    snapshot: SnapshotAssertion,
+) -> None:
+    worn = {
+        "all": ALL,
+        "no feet": ALL - FEET,
+        "no left foot": ALL - {Site.LEFT_FOOT},
+        "a right leg without its foot": frozenset({Site.RIGHT_THIGH, Site.RIGHT_SHANK}),
+        "a left leg: nobody asks for one that wears none": frozenset(
+            {Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT}
+        ),
+    }
+    assert {case: (no_foot_message(sites), no_angles_message(sites)) for case, sites in worn.items()} == snapshot
 
 
-def test_angles_are_promised_for_when_they_come() -> None:
-    assert "five strides" in no_angles_message(ALL)[1]
-    assert "The angles appear when the walk has been stopped" in no_angles_message(ALL - FEET)[1]
-
-
-@pytest.mark.parametrize(
-    ("lacks", "stated"),
-    [
-        ((), ""),
-        ((Lack("DOT 0003", lost=12),), "Samples of A Shoes could not be fetched: DOT 0003 12."),
-        ((Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)), "DOT 0004 stopped 20 s before the end of A Shoes."),
-        ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not report the end of A Shoes."),
-    ],
-)
-def test_what_could_not_be_fetched_is_reported_the_gravest_first(lacks: tuple[Lack, ...], stated: str) -> None:
-    assert lacks_message("A Shoes", lacks)[0] == stated
-
-
-def test_sensors_without_one_clock_are_named_or_stated_to_drift() -> None:
-    assert loose_message(["DOT 0003"])[0] == "Not synchronised: DOT 0003."
-    assert "half an hour ago" in loose_message([])[0]
-
-
-def test_only_what_is_short_of_a_spread_is_reported() -> None:
-    assert few_strides_message({Side.LEFT: 12}) == NOTHING
-    assert (
-        few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides; a standard deviation needs 10."
-    )
-    assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides; a standard deviation needs 10."
+def test_what_a_walk_lacks_is_reported_the_gravest_first(snapshot: SnapshotAssertion) -> None:
+    lacks = {
+        "nothing": (),
+        "samples": (Lack("DOT 0003", lost=12),),
+        "samples of one and the end of another": (Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)),
+        "an end that was not reported": (Lack("DOT 0003", is_end_known=False),),
+    }
+    strides = {
+        "enough for a spread": {Side.LEFT: 12},
+        "too few of one leg": {Side.LEFT: 12, Side.RIGHT: 4},
+        "too few of the only leg": {Side.LEFT: 9},
+    }
+    assert {
+        "could not be fetched": {case: lacks_message("A Shoes", one) for case, one in lacks.items()},
+        "strides": {case: few_strides_message(one) for case, one in strides.items()},
+        "without one clock": loose_message(["DOT 0003"]),
+        "clocks that drift": loose_message([]),
+    } == snapshot
 
 
 def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, looked_at: Visit, worn: dict[str, Site]
 ) -> None:
-    monkeypatch.setattr(visit, "evaluate", lambda: None)
-    begin(qtbot, visit, worn)
+    visit = looked_at
     visit.sensors.assign_all({name: site for name, site in worn.items() if site not in FEET})
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION):
         record(qtbot, visit, kind, 0.5)

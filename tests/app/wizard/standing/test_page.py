@@ -1,6 +1,7 @@
 """Standing still on the page: the count, who moved, what follows without it, and the angles typed beside it."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
@@ -9,6 +10,7 @@ from PySide6.QtGui import QPaintEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.theme.current import set_scale
 from app.theme.icons import Icon
@@ -34,6 +36,10 @@ def counting(still_s: float = 1.2, **more: object) -> StandStillView:
     return StandStillView(StandPhase.COUNTING, still_s, movement_deg_s=STILL, **more)  # type: ignore[arg-type]  # any of its fields
 
 
+def counting_of(names: Iterable[str]) -> StandStillView:
+    return StandStillView(StandPhase.COUNTING, 1.2, movement_deg_s=dict.fromkeys(names, 0.4))
+
+
 @pytest.fixture
 def page(qtbot: QtBot) -> StandStillPage:
     page = StandStillPage()
@@ -55,61 +61,46 @@ def test_the_ring_counts_the_seconds_that_are_left(still_s: float, figure: str) 
     assert face.share == pytest.approx(still_s / 3, abs=1e-3)
 
 
-def test_before_the_count_the_ring_states_which_key_starts_it() -> None:
+def test_the_ring_states_which_key_starts_it_and_closes_with_a_check_mark() -> None:
     face = ring_face(StandStillView(movement_deg_s=STILL))
     assert (face.share, face.key, face.word) == (0.0, "Space", "starts")
-
-
-def test_the_ring_closes_with_a_check_mark() -> None:
     face = ring_face(StandStillView(StandPhase.DONE, 3.0, movement_deg_s=STILL))
     assert (face.share, face.icon) == (1.0, Icon.CHECK)
 
 
-def test_bias_and_zero_are_known_once_the_recording_has_been_read_back() -> None:
-    done = StandStillView(phase=StandPhase.DONE, still_s=3.0)
-    assert instruction(done) == "Still for 3.0 s. Gyroscope offset and standing reference are set."
-    assert instruction(replace(done, is_read_back=False)) == "Still for 3.0 s. The recording is being loaded."
-
-
-def test_who_moved_is_named_until_a_second_is_still_again() -> None:
-    moved = (Site.LEFT_THIGH,)
-    _, what, then, is_caution = verdict(counting(0.2, moved=moved))
-    assert what == "L thigh moving"
-    assert then == "The countdown restarts automatically."
-    assert is_caution
-    assert verdict(counting(1.1, moved=moved))[1] == "All 6 sensors still"
-
-
-def test_both_legs_and_many_sensors_are_stated_in_a_few_words() -> None:
-    _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_THIGH, Site.RIGHT_FOOT)))
-    assert what == "L thigh and R foot moving"
-    assert then == "The countdown restarts automatically."
-    assert verdict(counting(0.0, moved=LEG_SITES))[1] == "6 sensors moving"
-
-
-def test_a_silent_sensor_comes_before_one_that_moves() -> None:
-    _, what, then, is_caution = verdict(counting(0.0, moved=(Site.LEFT_THIGH,), silent=(Site.RIGHT_FOOT,)))
-    assert what == "R foot: no signal"
-    assert then == "The countdown is paused. Switch the sensor off and on."
-    assert is_caution
-
-
-def test_fewer_sensors_are_counted_as_they_are() -> None:
-    four: dict[str, float] = {site: 0.2 for site in LEG_SITES if site.segment != "foot"}
-    assert verdict(StandStillView(movement_deg_s=four))[1] == "All 4 sensors still"
-
-
-def test_sensors_that_nobody_has_placed_go_by_their_names() -> None:
+def test_the_verdict_names_what_holds_up_the_count(snapshot: SnapshotAssertion) -> None:
+    thigh, foot, pelvis = Site.LEFT_THIGH, Site.RIGHT_FOOT, Site.PELVIS
     unplaced = StandStillView(StandPhase.COUNTING, 0.1, movement_deg_s={"0A2C": 9.0, "0A22": 0.4}, moved=("0A2C",))
-    assert verdict(unplaced)[1:3] == ("0A2C moving", "The countdown restarts automatically.")
+    views = {
+        "who moved is named": counting(0.2, moved=(thigh,)),
+        "but not once a second is still again": counting(1.1, moved=(thigh,)),
+        "both legs": counting(0.0, moved=(thigh, foot)),
+        "many sensors in a few words": counting(0.0, moved=LEG_SITES),
+        "a silent sensor comes before one that moves": counting(0.0, moved=(thigh,), silent=(foot,)),
+        "fewer sensors are counted as they are": StandStillView(movement_deg_s=dict.fromkeys(LEG_SITES[:4], 0.2)),
+        "and more than there are places": counting_of(f"0A{number}" for number in range(9)),
+        "sensors that nobody has placed go by their names": unplaced,
+        "a silent pelvis holds up nothing": counting(silent=(pelvis,)),
+        "unless a foot is silent too": counting(0.0, silent=(pelvis, Site.LEFT_FOOT)),
+        "a pelvis that moves": counting(0.0, moved=(pelvis,)),
+        "a foot and a pelvis that move": counting(0.0, moved=(Site.LEFT_FOOT, pelvis)),
+        "what is not received enough is not still": replace(
+            counting(), movement_deg_s=STILL | {Site.LEFT_FOOT: math.inf}
+        ),
+    }
+    stated = {case: verdict(view) for case, view in views.items()}
+    stated["in less room"] = verdict(counting(silent=(pelvis,)), is_short=True)
+    assert stated == snapshot
 
 
-def test_going_on_without_is_offered_after_three_restarts() -> None:
-    assert not way_round(counting(restarts=2))[3]
-    _, what, then, is_caution = way_round(counting(restarts=3))
-    assert what == "The countdown restarted 3 times."
-    assert then == "If the patient cannot stand, range of motion is reported, absolute angles are not."
-    assert is_caution
+def test_what_is_done_and_the_way_without_standing_are_stated_when_they_are_so(snapshot: SnapshotAssertion) -> None:
+    done = StandStillView(phase=StandPhase.DONE, still_s=3.0)
+    assert {
+        "offset and reference are set": instruction(done),
+        "not before it has been read back": instruction(replace(done, is_read_back=False)),
+        "after three restarts the way without is offered": way_round(counting(restarts=3)),
+        "after two it is not": way_round(counting(restarts=2)),
+    } == snapshot
 
 
 def test_without_standing_the_page_states_what_is_lost_and_the_way_back(qtbot: QtBot, page: StandStillPage) -> None:
@@ -196,33 +187,10 @@ def test_only_the_row_whose_figure_changed_is_painted(qtbot: QtBot, monkeypatch:
 
 
 def test_seven_are_counted_and_the_pelvis_has_a_row_without_a_side(page: StandStillPage) -> None:
-    seven = StandStillView(StandPhase.COUNTING, 1.2, movement_deg_s=dict.fromkeys(Site, 0.4))
+    seven = counting_of(Site)
     assert verdict(seven)[1] == "All 7 sensors still"
     page.show_state(seven)
     assert page.findChildren(MovementBars)[0].sizeHint().height() == 7 * 32
-
-
-def test_a_silent_pelvis_holds_up_nothing(page: StandStillPage) -> None:
-    silent = counting(1.2, silent=(Site.PELVIS,))
-    _, what, then, is_caution = verdict(silent)
-    assert (what, then) == ("Pelvis: no signal", "The countdown continues; hip angles will be missing.")
-    assert is_caution
-    assert verdict(silent, is_short=True)[2] == "No hip angles."
-    assert "The countdown is paused." in verdict(counting(0.0, silent=(Site.PELVIS, Site.LEFT_FOOT)))[2]
-
-
-def test_a_pelvis_that_moves_is_named() -> None:
-    _, what, then, _ = verdict(counting(0.0, moved=(Site.PELVIS,)))
-    assert what == "Pelvis moving"
-    assert then == "The countdown restarts automatically."
-    _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_FOOT, Site.PELVIS)))
-    assert what == "L foot and pelvis moving"
-    assert then == "The countdown restarts automatically."
-
-
-def test_more_sensors_than_places_are_all_still() -> None:
-    names = {f"0A{number}": 0.3 for number in range(9)}
-    assert verdict(StandStillView(StandPhase.COUNTING, 1.0, movement_deg_s=names))[1] == "All 9 sensors still"
 
 
 @pytest.mark.parametrize("phase", StandPhase)
@@ -237,11 +205,6 @@ def test_all_are_never_stated_to_be_still_beside_a_figure_above_the_limit(
         if phase in (StandPhase.READY, StandPhase.COUNTING):
             assert "moving" in stated
         assert "All 6 sensors still" in verdict(replace(view, movement_deg_s=STILL)) or phase is StandPhase.SKIPPED
-
-
-def test_what_is_not_received_enough_is_not_stated_to_be_still() -> None:
-    view = replace(counting(), movement_deg_s=STILL | {Site.LEFT_FOOT: math.inf})
-    assert verdict(view) == (None, "", "", False)
 
 
 def test_a_sensor_moves_just_when_its_figure_reaches_the_limit() -> None:
