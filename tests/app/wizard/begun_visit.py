@@ -1,11 +1,12 @@
 """A visit whose patient wears all sensors of its first source, and what is recorded of it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
 from app.editing.session_recording import SessionRecording
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
@@ -31,6 +32,18 @@ def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient: Patient = 
     visit.sensors.assign_all(worn)
     with qtbot.waitSignal(visit.changed):
         visit.place_sensors()
+
+
+def shown(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
+    """The step of the sensors, entered; what a fixture yields from."""
+    step = SensorsStep(visit)
+    qtbot.addWidget(step.page)
+    step.page.resize(1064, 672)
+    step.page.show()
+    step.enter()
+    yield step
+    step.leave()
+    step.deleteLater()
 
 
 def start(qtbot: QtBot, visit: Visit, kind: RecordingKind = RecordingKind.WALKING, condition: str = "") -> Acquisition:

@@ -1,43 +1,27 @@
 """What is stated while sensors are brought onto one clock, and of each way in which that may fail."""
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
-from app.widgets.sensors_progress import LineState
 from app.wizard.sensor_sync import REASONS, SensorSync, SyncView, lines_of, progress_of, sentence_of
 from devices.dot.synchronising import SyncFailure, SyncStage
 
 NAMES = ("DOT 0001", "DOT 0002", "DOT 0003")
-DONE, NOW, TO_DO = LineState.DONE, LineState.NOW, LineState.TO_DO
 
 
-@pytest.mark.parametrize(
-    ("stage", "sensor", "stated"),
-    [
-        (SyncStage.PREPARING, "", "Connecting to the sensors."),
-        (SyncStage.PREPARING, "DOT 0002", "DOT 0002 is being set up."),
-        (SyncStage.WAITING, "", "The sensors are comparing their clocks automatically. Leave them where they are."),
-        (SyncStage.CONNECTING, "DOT 0001", "Checking the result of DOT 0001."),
-        (SyncStage.LISTENING, "", "Comparing the sensor clocks."),
-    ],
-)
-def test_each_stage_has_its_sentence(stage: SyncStage, sensor: str, stated: str) -> None:
-    assert sentence_of(SyncView(stage, sensor)) == stated
-
-
-@pytest.mark.parametrize(
-    ("stage", "sensor", "states"),
-    [
-        (SyncStage.PREPARING, "", [TO_DO, TO_DO, TO_DO]),
-        (SyncStage.PREPARING, "DOT 0002", [DONE, NOW, TO_DO]),
-        (SyncStage.WAITING, "", [NOW, NOW, NOW]),
-        (SyncStage.CONNECTING, "DOT 0001", [NOW, TO_DO, TO_DO]),
-        (SyncStage.LISTENING, "", [DONE, DONE, DONE]),
-    ],
-)
-def test_sensors_before_the_one_that_it_is_about_are_done(
-    stage: SyncStage, sensor: str, states: list[LineState]
+def test_each_stage_has_its_sentence_and_sensors_before_the_one_that_it_is_about_are_done(
+    snapshot: SnapshotAssertion,
 ) -> None:
-    assert [line.state for line in lines_of(SyncView(stage, sensor), NAMES)] == states
+    views = {
+        "preparing, before the first": SyncView(SyncStage.PREPARING, ""),
+        "preparing the second": SyncView(SyncStage.PREPARING, "DOT 0002"),
+        "waiting for all": SyncView(SyncStage.WAITING, ""),
+        "connecting to the first": SyncView(SyncStage.CONNECTING, "DOT 0001"),
+        "listening to all": SyncView(SyncStage.LISTENING, ""),
+    }
+    assert {
+        case: (sentence_of(view), [line.state.name for line in lines_of(view, NAMES)]) for case, view in views.items()
+    } == snapshot
 
 
 def test_every_failure_has_its_reason() -> None:

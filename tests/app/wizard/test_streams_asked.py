@@ -9,6 +9,7 @@ from app.wizard.sensors.sources import SEARCH, STREAMS, Sources
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from devices.search import SearchResult
+from tests.app.wizard.begun_visit import shown
 
 NETWORK = STREAMS + "192.0.2.9"
 WARNING = "This asks every computer on the network of 192.0.2.9"
@@ -29,14 +30,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     visit.known_choices = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
-    step = SensorsStep(visit)
-    qtbot.addWidget(step.page)
-    step.enter()
-    step.page.resize(1064, 672)
-    step.page.show()
-    yield step
-    step.leave()
-    step.deleteLater()
+    yield from shown(qtbot, visit)
 
 
 def stated(step: SensorsStep) -> str:

@@ -25,6 +25,13 @@ def page(qtbot: QtBot) -> ReportPage:
     return page
 
 
+def in_room(page: ReportPage, width: int, height: int) -> None:
+    """Show it as a window of this size does."""
+    page.resize(width, height)
+    page.set_room(width, height)
+    page.show()
+
+
 def png(ppi: float) -> bytes:
     """A page of A4, blank."""
     image = QImage(round(ppi * PAPER_INCH), round(ppi * 11.69), QImage.Format.Format_RGB32)
@@ -80,18 +87,14 @@ def language(request: pytest.FixtureRequest) -> Iterator[str]:
 def test_the_card_beside_the_pages_is_as_wide_as_its_words_in_each_language(qtbot: QtBot) -> None:
     page = ReportPage()
     qtbot.addWidget(page)
-    page.resize(1064, 640)
-    page.set_room(1064, 640)
-    page.show()
+    in_room(page, 1064, 640)
     assert words_cut(page) == []
 
 
 def test_a_long_condition_of_an_earlier_visit_does_not_widen_the_card(qtbot: QtBot) -> None:
     page = ReportPage()
     qtbot.addWidget(page)
-    page.resize(1064, 640)
-    page.set_room(1064, 640)
-    page.show()
+    in_room(page, 1064, 640)
     settle()
     before = page.editor.width()
     page.show_visits([(UUID(int=1), "14 Nov 2026, " + "shoes and orthosis with wedge, " * 3)])

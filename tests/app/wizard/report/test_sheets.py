@@ -7,16 +7,14 @@ from PySide6.QtWidgets import QScrollBar
 from pytestqt.qtbot import QtBot
 
 from app.wizard.report.page import ReportPage
-from tests.app.wizard.report.test_page import png
+from tests.app.wizard.report.test_page import in_room, png
 
 
 @pytest.fixture
 def page(qtbot: QtBot) -> ReportPage:
     page = ReportPage()
     qtbot.addWidget(page)
-    page.resize(1280, 620)
-    page.set_room(1280, 620)
-    page.show()
+    in_room(page, 1280, 620)
     page.show_pages([png(72)] * 4)
     qtbot.waitUntil(lambda: scrolled(page).maximum() > 0)
     return page

@@ -20,6 +20,7 @@ from devices.emulators.csv_lines import LineVoice
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.live import SourceRefusedError
 from devices.transport.ports import PortInfo
+from tests.app.wizard.begun_visit import shown
 from tests.app.wizard.present import present
 from tests.app.wizard.pressing import press
 
@@ -45,14 +46,7 @@ def step(qtbot: QtBot, visit: Visit, place: str) -> Iterator[SensorsStep]:
         SourceChoice(COLUMNS, "Text lines (CSV)", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
         SourceChoice(SEARCH, "Search", search),  # type: ignore[arg-type]  # it only refuses
     )
-    step = SensorsStep(visit)
-    qtbot.addWidget(step.page)
-    step.enter()
-    step.page.resize(1064, 672)
-    step.page.show()
-    yield step
-    step.leave()
-    step.deleteLater()
+    yield from shown(qtbot, visit)
 
 
 def asked(qtbot: QtBot, step: SensorsStep) -> ColumnsForm:
