@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.acquisition.heartbeat import ProcessStall
 from app.storage.journal.disk import Trouble
@@ -16,7 +17,6 @@ from app.wizard.journal_words import (
     trouble_message,
     unread_message,
 )
-from app.wizard.losses import NOTHING
 
 FINE = JournalStatus(
     state=State.RECORDING,
@@ -47,29 +47,11 @@ def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_no
     assert ("responds slowly" in stated) is (status is LATE)
 
 
-def test_a_late_disk_that_answers_again_states_what_it_cost() -> None:
-    assert trouble_message(Trouble.DISK_SLOW, AGAIN) == (
-        "The disk was slow and now responds again.",
-        "No data were lost because of this.",
-    )
-    _, then = trouble_message(Trouble.DISK_SLOW, AGAIN, lost=90)
-    assert then == "No data were discarded because of this."
-
-
 @pytest.mark.parametrize("trouble", [Trouble.DISK_SLOW, Trouble.DROPPED])
 def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
     what, then = trouble_message(trouble, DROPPING)
     assert "The disk did not respond for too long, so samples were lost" in what
     assert then.startswith("7 data packets were lost so far and stay gaps. ")
-
-
-@pytest.mark.parametrize("trouble", sorted(ENDS))
-def test_a_disk_that_ended_the_recording_states_up_to_where_it_is_kept(trouble: Trouble) -> None:
-    _, then = trouble_message(trouble, CLOSED)
-    assert ("The first 1:02 min of the recording are written." in then) is (trouble is not Trouble.DISK_GONE)
-    assert ("The first 1:01 min of the recording are confirmed on the disk." in then) is (trouble is Trouble.DISK_GONE)
-    _, then = trouble_message(trouble, replace(CLOSED, dropped_records=2))
-    assert ("are written; everything after that is lost" in then) is (trouble is not Trouble.DISK_GONE)
 
 
 @pytest.mark.parametrize("is_tried_again", [True, False])
@@ -84,45 +66,36 @@ def test_only_a_journal_that_is_closed_whole_is_called_safe(is_tried_again: bool
         assert stated(status).startswith("The first 1:01 min of the recording are on the disk")
 
 
-def test_a_recording_without_a_row_is_called_written_only_while_all_of_it_is() -> None:
-    assert "The recording is still written to the disk" in no_row_message(FINE)[1]
-    assert "written" not in no_row_message(DROPPING)[1]
-
-
 def test_what_comes_in_is_called_saved_only_while_the_journal_takes_all_of_it() -> None:
     assert is_written(FINE)
     for status in (LATE, replace(FINE, dropped_records=1), CLOSED, replace(FINE, state=State.BROKEN)):
         assert not is_written(status)
 
 
-def standstill(
-    lost: dict[str, int], now_s: float = 75.0, *, are_received: bool = True, are_counted: bool = True
-) -> str:
-    return " ".join(standstill_message(STOOD, 10.0, now_s, lost, are_received, are_counted)).strip()
+def test_what_a_disk_cost_and_up_to_where_a_recording_is_kept_is_stated(snapshot: SnapshotAssertion) -> None:
+    dropped = replace(CLOSED, dropped_records=2)
+    assert {
+        "late, and answers again": trouble_message(Trouble.DISK_SLOW, AGAIN),
+        "late, and answers again, but samples were lost otherwise": trouble_message(Trouble.DISK_SLOW, AGAIN, lost=90),
+        **{f"{one.name} ended it": trouble_message(one, CLOSED) for one in sorted(ENDS)},
+        **{f"{one.name} after a loss": trouble_message(one, dropped) for one in sorted(ENDS)},
+        "without a row, all is still written": no_row_message(FINE),
+        "without a row, and something was dropped": no_row_message(DROPPING),
+    } == snapshot
 
 
-def test_a_standstill_that_cost_samples_states_so() -> None:
-    assert standstill({"a": 4005, "b": 2000}) == (
-        "Gaitwright stalled for 20 s, 0:41 min into the recording. Samples were lost and leave gaps. Missing "
-        "samples are counted when the recording is loaded."
-    )
-    assert "were lost" in standstill({"a": 5, "b": 1})
-    assert "were lost" not in standstill({"a": 5, "b": 0})
-
-
-def test_no_sample_is_missing_only_where_all_sensors_are_received_counted_and_whole() -> None:
-    none = "No sample is missing"
-    whole = {"a": 5, "b": 0}
-    assert none in standstill(whole)
-    assert none not in standstill({"a": 6, "b": 0})
-    assert none not in standstill(whole, are_received=False)
-    assert none not in standstill(whole, are_counted=False)
-    assert none not in standstill(whole, now_s=71.5)  # what waited is still being read
-    assert standstill(whole, are_received=False).endswith("Missing samples are being counted.")
-
-
-def test_a_standstill_of_before_or_long_ago_is_not_reported_and_sleep_is_called_so() -> None:
-    assert standstill_message(STOOD, 72.0, 75.0, {}, True, True) == NOTHING
-    assert standstill_message(STOOD, 10.0, 72.0 + STANDSTILL_REPORTED_S, {}, True, True) == NOTHING
-    asleep = replace(STOOD, asleep_s=19.0)
-    assert standstill_message(asleep, 10.0, 75.0, {}, True, True)[0].startswith("The computer was asleep for 20 s")
+def test_a_standstill_states_what_it_cost_as_soon_as_that_is_known(snapshot: SnapshotAssertion) -> None:
+    """No sample is missing only where all sensors are received, counted and whole."""
+    whole, long_ago_s = {"a": 5, "b": 0}, 72.0 + STANDSTILL_REPORTED_S
+    assert {
+        "samples of both": standstill_message(STOOD, 10.0, 75.0, {"a": 4005, "b": 2000}, True, True),
+        "one sample of one": standstill_message(STOOD, 10.0, 75.0, {"a": 5, "b": 1}, True, True),
+        "one more than was lost before": standstill_message(STOOD, 10.0, 75.0, {"a": 6, "b": 0}, True, True),
+        "whole": standstill_message(STOOD, 10.0, 75.0, whole, True, True),
+        "not all are received": standstill_message(STOOD, 10.0, 75.0, whole, False, True),
+        "not all are counted": standstill_message(STOOD, 10.0, 75.0, whole, True, False),
+        "what waited is still being read": standstill_message(STOOD, 10.0, 71.5, whole, True, True),
+        "asleep": standstill_message(replace(STOOD, asleep_s=19.0), 10.0, 75.0, {}, True, True),
+        "before the recording": standstill_message(STOOD, 72.0, 75.0, {}, True, True),
+        "long ago": standstill_message(STOOD, 10.0, long_ago_s, {}, True, True),
+    } == snapshot
