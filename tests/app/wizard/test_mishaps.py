@@ -272,7 +272,7 @@ def test_who_skips_the_free_motion_is_reported_its_price(qtbot: QtBot, looked_at
     step = WalkingStep(looked_at)
     assert step.bar().note == "Without free motion, joint angles are uncertain or missing."
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
-    assert step.bar().note.startswith("Next:")
+    qtbot.waitUntil(lambda: step.bar().note.startswith("Next:"))  # on a busy machine nothing is received for a moment
 
 
 def test_walks_are_judged_without_sensors(qtbot: QtBot, library: Library, looked_at: Visit) -> None:
