@@ -508,7 +508,7 @@ def test_pictures_of_the_video_are_in_the_report_only_where_somebody_chose_them(
     report = step.page.report
     assert not report.video.isVisible()
     walk = next(one for one in analysis.recordings if one.name == request_of(step).walks[-1])
-    clip = drawn_clip(walk, size=(320, 180))
+    clip = drawn_clip(walk, size=(64, 36))
     visit.clips.opened.emit((replace(clip, sync=None),))
     assert not report.video.isVisible()  # nobody knows which moment a frame is of
     visit.clips.opened.emit((clip,))
@@ -528,7 +528,7 @@ def test_pictures_are_offered_also_where_the_results_come_after_the_video(
     walk = next(one for one in analysis.recordings if one.name == request_of(step).walks[-1])
     session = evaluation.session
     evaluation.session = evaluation.analysis = None
-    visit.clips.opened.emit((drawn_clip(walk, size=(320, 180)),))
+    visit.clips.opened.emit((drawn_clip(walk, size=(64, 36)),))
     assert not report.video.isVisible()
     evaluation.session, evaluation.analysis = session, analysis
     evaluation.done.emit()
