@@ -1,4 +1,4 @@
-"""An angle that no joint has is reported and not drawn: on the page, in its figures, and on the patient's screen."""
+"""An angle that no joint has is reported and not drawn: on the page and in its figures."""
 
 from collections.abc import Mapping
 from types import SimpleNamespace
@@ -10,7 +10,6 @@ import pytest
 from app.wizard.losses import NOTHING
 from app.wizard.walking import estimator as estimator_module
 from app.wizard.walking.estimator import KEPT_S, WalkingEstimator
-from app.wizard.walking.patient_status import hindrance
 from app.wizard.walking.readout import LiveTrace, WalkingReadout
 from app.wizard.walking.walk_notice import WalkNotice
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side
@@ -20,7 +19,7 @@ from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue, StrideValues
 from core.live.walking import LiveFoot, LiveJoint, WalkingState
 from core.samples import FloatArray, ImuBlock
-from core.targets import Target, TargetMeasure
+from core.targets import TargetMeasure
 
 STEP_S = 0.01
 KNEE = Joint.LEFT_KNEE
@@ -139,9 +138,3 @@ def test_it_is_stated_above_the_walks_while_one_goes_on() -> None:
     assert what == "Left knee: angle outside −40° to 160°, not shown."
     assert then == "Check the sensor positions, then record the free motion again."
     assert WalkNotice(visit).message(WalkingReadout(joints={KNEE: trace})) == NOTHING
-
-
-def test_a_patient_is_shown_nothing_of_it() -> None:
-    target = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 60)
-    assert hindrance(target, WalkingReadout(implausible=(KNEE,)), LEG_SITES)[0].startswith("Left knee: angle outside")
-    assert hindrance(target, WalkingReadout(implausible=(Joint.RIGHT_KNEE,)), LEG_SITES) == NOTHING
