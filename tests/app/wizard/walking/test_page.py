@@ -1,6 +1,7 @@
 """The Walking page: none yet, recording, asking, between; by mouse, by keys, and in words for who cannot see it."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -28,64 +29,75 @@ RECOVERED = WalkRow("4", "B", "Shoes", WalkState.RECOVERED, 9)
 LABELS = ("Barefoot", "Shoes", "AFO")
 
 
-@pytest.fixture
-def page(qtbot: QtBot, request: pytest.FixtureRequest) -> WalkingPage:
-    if "pseudo_language" in request.fixturenames:
-        request.getfixturevalue("pseudo_language")  # before anything is stated
+@pytest.fixture(scope="module")
+def one_page(qapp: QApplication) -> Iterator[WalkingPage]:
+    """Made once: that takes longer than most tests of it."""
     page = WalkingPage()
-    qtbot.addWidget(page)
-    page.resize(1064, 600)
-    page.show_labels(LABELS, "Shoes")
-    page.show()
-    return page
+    yield page
+    page.close()
+    page.deleteLater()
+
+
+@pytest.fixture
+def page(qtbot: QtBot, one_page: WalkingPage) -> Iterator[WalkingPage]:
+    """Nothing is walked, and there is room."""
+    one_page.resize(1064, 600)
+    one_page.show_labels(LABELS, "Shoes")
+    with qtbot.waitActive(one_page):
+        one_page.show()
+        one_page.activateWindow()
+    yield one_page
+    one_page.set_compact(False)
+    one_page.show_walks(())
+    one_page.show_message("")
+    one_page.show_received([])
+
+
+def renamed(page: WalkingPage, *rows: WalkRow) -> tuple[QAbstractButton, Field]:
+    """Press the pen of the first walk; gives it and the field in its place."""
+    page.show_walks(rows)
+    edit = page.walks.buttons[0]
+    assert isinstance(edit, QAbstractButton)
+    edit.click()
+    return edit, page.walks.findChildren(Field)[0]
 
 
 def test_a_kept_walk_is_renamed_where_it_was_made(qtbot: QtBot, page: WalkingPage) -> None:
-    page.show_walks((KEPT, DISCARDED))
-    (edit,) = [one for one in page.walks.buttons if one.accessibleName() == "Rename A Barefoot"]
-    assert isinstance(edit, QAbstractButton)
-    edit.click()
-    field = page.walks.findChildren(Field)[0]
+    edit, field = renamed(page, KEPT, DISCARDED)
+    assert edit.accessibleName() == "Rename A Barefoot"
     assert field.isVisible()
     assert not edit.isVisible()
     QTest.keyClicks(field.line_edit, "Own shoes")
     page.show_walks((replace(KEPT, strides=19), DISCARDED))  # counted meanwhile
     assert field.isVisible()
-    with qtbot.waitSignal(page.walks.renamed) as renamed:
+    with qtbot.waitSignal(page.walks.renamed) as signal:
         QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
-    assert renamed.args == ["1", "Own shoes"]
+    assert signal.args == ["1", "Own shoes"]
     page.show_walks((replace(KEPT, label="Own shoes"), DISCARDED))
     assert not field.isVisible()
     assert [one.accessibleName() for one in page.walks.buttons] == ["Rename A Own shoes", "Include B Shoes again"]
 
 
-def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: WalkingPage) -> None:
-    page.show_walks((KEPT,))
-    (edit,) = page.walks.buttons
-    assert isinstance(edit, QAbstractButton)
-    for keys in ("Barefoot", " "):
-        edit.click()
-        field = page.walks.findChildren(Field)[0]
-        QTest.keyClicks(field.line_edit, keys)
-        with qtbot.assertNotEmitted(page.walks.renamed):
-            QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
-        assert not field.isVisible()
+@pytest.mark.parametrize("keys", ["Barefoot", " "])
+def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: WalkingPage, keys: str) -> None:
+    _, field = renamed(page, KEPT)
+    QTest.keyClicks(field.line_edit, keys)
+    with qtbot.assertNotEmitted(page.walks.renamed):
+        QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
+    assert not field.isVisible()
 
 
 def test_escape_takes_back_what_was_typed_as_a_name(qtbot: QtBot, page: WalkingPage) -> None:
     """It went to the window, and the words were kept on leaving."""
-    page.show_walks((KEPT,))
     at_window = QShortcut(QKeySequence(Qt.Key.Key_Escape), page)
-    (edit,) = page.walks.buttons
-    assert isinstance(edit, QAbstractButton)
-    edit.click()
-    field = page.walks.findChildren(Field)[0]
+    edit, field = renamed(page, KEPT)
     QTest.keyClicks(field.line_edit, "Own shoes")
     with qtbot.assertNotEmitted(page.walks.renamed), qtbot.assertNotEmitted(at_window.activated):
         QTest.keyClick(field.line_edit, Qt.Key.Key_Escape)
     assert not field.isVisible()
     edit.click()
     assert field.text == "Barefoot"
+    at_window.deleteLater()
 
 
 def test_a_double_click_or_f2_names_a_kept_walk_and_no_other(page: WalkingPage) -> None:
@@ -144,7 +156,7 @@ def test_while_a_walk_is_recorded_curves_and_figures_are_all_there_is(page: Walk
     assert not page.walks.restrapped.isVisible()
 
 
-def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage, qtbot: QtBot) -> None:
+def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage) -> None:
     page.show_walks((RECORDING,))
     QApplication.processEvents()
     before = page.charts.geometry()
@@ -178,7 +190,7 @@ def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> No
     assert undone.args == ["2"]
 
 
-def test_a_recovered_walk_asks_as_a_stopped_one_does(page: WalkingPage, qtbot: QtBot) -> None:
+def test_a_recovered_walk_asks_as_a_stopped_one_does(page: WalkingPage) -> None:
     page.show_walks((KEPT, RECOVERED))
     assert {"recovered, needs review", "B  Shoes: recovered", "Include 9 strides"} <= set(texts(page))
     page.show_walks((KEPT, RECOVERED, ASKING))
@@ -208,7 +220,6 @@ def test_arrows_go_from_label_to_label(page: WalkingPage) -> None:
 
 
 def test_the_focus_lies_on_no_button_so_that_space_starts_and_stops(page: WalkingPage) -> None:
-    page.activateWindow()
     page.focus()
     assert QApplication.focusWidget() is page.empty
     QTest.mouseClick(page.next.chooser.buttons[0], Qt.MouseButton.LeftButton)
@@ -235,32 +246,25 @@ def test_other_words_are_a_label_too(page: WalkingPage, qtbot: QtBot) -> None:
     assert page.next.chooser.own.text == ""
 
 
-def test_a_label_used_before_keeps_its_letter(page: WalkingPage) -> None:
-    page.show_walks((KEPT, DISCARDED))
-    assert "Next condition: B" in texts(page)
-    page.choose_digit(3)
-    assert "Next condition: C" in texts(page)
-    page.choose_digit(1)
-    assert "Next condition: A" in texts(page)
+def letters(page: WalkingPage, rows: tuple[WalkRow, ...], *digits: int) -> list[str]:
+    """Of the next walk: with its own label, and with that of each digit."""
+    page.show_labels(LABELS, "Shoes")
+    page.show_walks(rows)
+    found = []
+    for digit in (None, *digits):
+        assert digit is None or page.choose_digit(digit)
+        (stated,) = [text for text in texts(page) if text.startswith("Next condition: ")]
+        found.append(stated.removeprefix("Next condition: "))
+    return found
 
 
-def test_a_second_walk_of_a_condition_keeps_its_letter_and_what_is_discarded_has_none(page: WalkingPage) -> None:
+def test_a_condition_keeps_its_letter_unless_sensors_were_strapped_again(page: WalkingPage) -> None:
+    assert letters(page, (KEPT, DISCARDED), 3, 1) == ["B", "C", "A"]
     second, gone = replace(KEPT, id="5", letter="A2"), replace(DISCARDED, id="6", letter="", label="Barefoot")
-    page.show_walks((KEPT, second, gone))
-    assert "Next condition: B" in texts(page)
-    page.choose_digit(1)
-    assert "Next condition: A" in texts(page)
-    assert [one.accessibleName() for one in page.walks.buttons] == [
-        "Rename A Barefoot",
-        "Rename A2 Barefoot",
-        "Include Barefoot again",
-    ]
-
-
-def test_sensors_strapped_again_begin_a_letter(page: WalkingPage) -> None:
-    page.show_walks((replace(KEPT, is_of_old_straps=True),))
-    page.choose_digit(1)
-    assert "Next condition: B" in texts(page)
+    assert letters(page, (KEPT, second, gone), 1) == ["B", "A"]
+    names = ["Rename A Barefoot", "Rename A2 Barefoot", "Include Barefoot again"]
+    assert [one.accessibleName() for one in page.walks.buttons] == names
+    assert letters(page, (replace(KEPT, is_of_old_straps=True),), 1)[-1] == "B"
 
 
 def test_sensors_strapped_again_are_reported_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:
@@ -272,13 +276,13 @@ def test_sensors_strapped_again_are_reported_with_the_consequence(page: WalkingP
 
 def test_charts_are_reported_in_words(page: WalkingPage) -> None:
     page.show_walks((RECORDING,))
-    page.show_view(live(5.0))
+    page.show_view(live(50.0))
     assert page.charts.accessibleDescription() == (
         "14 strides. Left 14. Right 13. Cadence 101 steps per minute. Left knee 30°. Right knee missing. Left ankle 0°."
     )
-    page.show_view(live(5.5, knee_deg=50.0))
+    page.show_view(live(50.5, knee_deg=50.0))
     assert "Left knee 30°" in page.charts.accessibleDescription()  # once a second is enough to listen to
-    page.show_view(live(6.1, knee_deg=50.0))
+    page.show_view(live(51.1, knee_deg=50.0))
     assert "Left knee 50°" in page.charts.accessibleDescription()
 
 
@@ -326,43 +330,48 @@ ROOMS = [(0.8, 850, 480, False), (1.0, 1064, 600, False), (1.0, 736, 388, True),
 
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize(("scale", "width", "height", "is_compact"), ROOMS)
-@pytest.mark.parametrize("rows", [(KEPT, RECORDING), (KEPT, DISCARDED, ASKING), ()])
 def test_no_word_is_cut_in_a_language_as_long_as_german(
-    page: WalkingPage,
-    scale: float,
-    width: int,
-    height: int,
-    is_compact: bool,
-    rows: tuple[WalkRow, ...],
+    qtbot: QtBot, scale: float, width: int, height: int, is_compact: bool
 ) -> None:
+    page = WalkingPage()
+    qtbot.addWidget(page)
+    page.show()
     set_scale(scale)
     page.set_compact(is_compact)
     page.resize(width, height)
     page.show_labels((*LABELS, "Alignment A"), "a knee with more friction")
-    page.show_walks(rows, "L 12, R 11 strides · 101 steps/min · 0:24")
-    page.show_view(live(is_provisional=True))
     page.set_simulated(True)
-    assert words_cut(page) == []
-    for area in page.findChildren(QScrollArea):  # nothing lies beside what is in sight
-        inside = area.widget()
-        if area.isVisible() and inside is not None:
-            assert inside.width() <= area.viewport().width()
-    page.show_message("R foot: no signal for 2 s.", "Recording goes on. Right ankle and phases are missing.")
-    assert words_cut(page) == []
+    for rows in ((), (KEPT, RECORDING), (KEPT, DISCARDED, ASKING)):
+        page.show_walks(rows, "L 12, R 11 strides · 101 steps/min · 0:24")
+        page.show_view(live(is_provisional=True))
+        page.show_message("")
+        assert words_cut(page) == []
+        for area in page.findChildren(QScrollArea):  # nothing lies beside what is in sight
+            inside = area.widget()
+            if area.isVisible() and inside is not None:
+                assert inside.width() <= area.viewport().width()
+        page.show_message("R foot: no signal for 2 s.", "Recording goes on. Right ankle and phases are missing.")
+        assert words_cut(page) == []
 
 
-def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: QtBot) -> None:
-    window = QWidget()
-    page = WalkingPage()
+@pytest.fixture
+def in_window(qtbot: QtBot) -> tuple[QWidget, WalkingPage]:
+    """In a window above a button, which Space would press and which would have the focus next."""
+    window, page = QWidget(), WalkingPage()
     column = QVBoxLayout(window)
     column.addWidget(page)
-    column.addWidget(QPushButton("Back"))  # which Space would press
+    column.addWidget(QPushButton("Back"))
     qtbot.addWidget(window)
-    page.set_compact(True)
-    page.show_labels(LABELS, "Shoes")
     with qtbot.waitActive(window):
         window.show()
         window.activateWindow()
+    return window, page
+
+
+def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(in_window: tuple[QWidget, WalkingPage]) -> None:
+    _, page = in_window
+    page.set_compact(True)
+    page.show_labels(LABELS, "Shoes")
     page.show_walks((RECORDING,))
     page.focus()
     assert QApplication.focusWidget() is page.charts
@@ -374,15 +383,10 @@ def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: Q
     assert not isinstance(QApplication.focusWidget(), QAbstractButton)
 
 
-def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot) -> None:
-    page = WalkingPage()
-    window = QWidget()
-    qtbot.addWidget(window)
-    column = QVBoxLayout(window)
-    column.addWidget(page)
-    column.addWidget(QPushButton("Back"))  # which would have the focus next
-    window.show()
-    window.activateWindow()
+def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(
+    qtbot: QtBot, in_window: tuple[QWidget, WalkingPage]
+) -> None:
+    _, page = in_window
     page.show_walks((RECORDING,))
     page.focus()
     qtbot.waitUntil(page.charts.hasFocus)

@@ -13,9 +13,9 @@ from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording.received import received_clause
 from core.body import LEG_SITES, Site
 from core.signal.received import SamplesReceived
-from tests.app.wizard.walking.test_page import page
+from tests.app.wizard.walking.test_page import one_page, page
 
-__all__ = ["page"]
+__all__ = ["one_page", "page"]
 
 WELL = SamplesReceived(1800, 1800, 0.0)
 LOSSY = SamplesReceived(1811, 1511, 3.01)
