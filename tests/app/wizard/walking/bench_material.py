@@ -3,6 +3,8 @@
 from types import SimpleNamespace
 from typing import Any
 
+from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.bench_view import BenchState
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method
@@ -39,3 +41,9 @@ def bench_visit() -> SimpleNamespace:
         recordings=SimpleNamespace(every=every, walks=every),
         evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False, has_failed=False),
     )
+
+
+def state_of(bench: Bench) -> BenchState:
+    state = bench.state()
+    assert state is not None
+    return state

@@ -26,6 +26,7 @@ from core.session import RecordingKind
 from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S
 from devices.simulation.walker import DEMONSTRATION, PEOPLE, FreeMotion, Standing, Walk
 from devices.simulation.walker_prosthesis import ProsthesisSetting
+from tests.app.wizard.walking.bench_material import state_of
 from tests.simulated import analysis_of, session_of
 
 FITTINGS = 20
@@ -122,12 +123,10 @@ def fitted(seed: int) -> SimpleNamespace:
 
 def shown(qtbot: QtBot, seed: int) -> Shown:
     bench = Bench(cast(Visit, fitted(seed)))
-    state = bench.state()
-    assert state is not None
     view = BenchView(bench.entry)
     qtbot.addWidget(view)
     view.fit(1400)
-    view.show_state(state)
+    view.show_state(state_of(bench))
     view.resize(1400, 620)
     view.show()
     model = view.differences.table.model()

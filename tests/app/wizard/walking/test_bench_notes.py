@@ -19,7 +19,7 @@ from app.wizard.walking.bench_view import BenchView
 from app.wizard.walking.shown_before import ShownBefore
 from core.body import Joint, JointKind, Side
 from core.results import SideGait
-from tests.app.wizard.walking.bench_material import bench_visit
+from tests.app.wizard.walking.bench_material import bench_visit, state_of
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
 
@@ -79,19 +79,16 @@ def test_a_new_walk_takes_the_place_of_the_pair_with_a_word_and_leaves_its_figur
     analysis = visit.evaluation.analysis
     visit.evaluation.analysis = replace(analysis, recordings=analysis.recordings[:2])
     bench = Bench(cast(Visit, visit))
-    before = bench.state()
-    assert before is not None
+    before = state_of(bench)
     assert before.found is not None
     assert before.notes == (NOT_MEASURED,)
     bench.begun()
     visit.evaluation.session, visit.evaluation.analysis = everything[0], analysis
     visit.recordings.every = visit.recordings.walks = everything[1]
-    after = bench.state()
-    assert after is not None
+    after = state_of(bench)
     assert after.notes == (NOT_MEASURED, "Now C − B; before: B − A.")
     bench.choose(1, is_beside=False)
-    again = bench.state()
-    assert again is not None
+    again = state_of(bench)
     assert again.notes == (NOT_MEASURED,)
     assert (again.answer, again.rows[1].title) == (before.answer, before.rows[1].title)
 
@@ -147,9 +144,7 @@ def test_every_head_and_row_is_explained_under_the_mouse(differences: BenchDiffe
     assert all(row.is_heading or row.hint for row in differences.table.cells.rows)
 
 
-def test_why_a_value_is_doubted_is_shown_with_the_walk_that_it_is_of(
-    qtbot: QtBot, differences: BenchDifferences
-) -> None:
+def test_why_a_value_is_doubted_is_shown_with_the_walk_that_it_is_of(differences: BenchDifferences) -> None:
     doubted = part("B", Joint.RIGHT_KNEE, 8.0, left=bent(70.0))
     assert cautions_of_table(pair(B, A), Side.LEFT) == []
     (stated,) = cautions_of_table(pair(doubted, A), Side.LEFT)
@@ -163,8 +158,7 @@ def test_why_a_value_is_doubted_is_shown_with_the_walk_that_it_is_of(
 
 def test_why_a_curve_is_doubted_is_beside_it(qtbot: QtBot) -> None:
     bench = Bench(cast(Visit, bench_visit()))
-    state = bench.state()
-    assert state is not None
+    state = state_of(bench)
     view = BenchView(bench.entry)
     qtbot.addWidget(view)
     view.show_state(state)
