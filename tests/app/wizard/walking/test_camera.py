@@ -10,22 +10,19 @@ from app.storage.stored import StoredClip
 from app.storage.videos.reader import open_clip
 from app.storage.videos.writer import ClipWriter
 from app.wizard import clips
-from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking import camera_control
 from app.wizard.walking.step import WalkingStep
 from core.body import Site
-from core.session import RecordingKind
 from core.video.clip import Clip, Sync, SyncBy
 from devices.cameras.camera import TEST_PICTURE, V4L2, CameraInfo
-from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PatientTime
-from tests.app.wizard.walking.shown_step import shown_step
+from tests.app.wizard.walking.shown_step import shown_step, start, stop
 
-CAMERA = CameraInfo("Test picture", "testsrc2=size=640x360:rate=30", TEST_PICTURE)
+CAMERA = CameraInfo("Test picture", "testsrc2=size=320x180:rate=30", TEST_PICTURE)
 OTHER = CameraInfo("Other picture", "testsrc=size=320x240:rate=15", TEST_PICTURE)
 FOUND = Sync(-0.1, 0.03, SyncBy.MOTION)
-RUN = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
@@ -45,7 +42,6 @@ def step(
     """Looked at as the wizard does, with these cameras."""
     monkeypatch.setattr(camera_control, "find_cameras", lambda: tuple(cameras))
     begin(qtbot, visit, worn)
-    record(qtbot, visit, RecordingKind.FREE_MOTION, 1.0)
     with shown_step(qtbot, visit, 672) as step:
         yield step
 
@@ -68,11 +64,9 @@ def switch_both_on(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
 
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, frames: int) -> None:
     """Until each camera has given so many frames of it."""
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     qtbot.waitUntil(lambda: all(feed.taken >= frames for feed in step.camera.feeds))
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
 
 
 def clips_of(qtbot: QtBot, visit: Visit, count: int = 1) -> list[StoredClip]:
@@ -80,14 +74,9 @@ def clips_of(qtbot: QtBot, visit: Visit, count: int = 1) -> list[StoredClip]:
     return [clip for clips in visit.clips.stored.values() for clip in clips]
 
 
-def test_without_a_camera_there_is_no_card(qtbot: QtBot, step: WalkingStep, cameras: list[CameraInfo]) -> None:
-    qtbot.waitUntil(lambda: step.page.camera.isVisible())
-    cameras.clear()
-    step.camera.look()
-    qtbot.waitUntil(lambda: step.page.camera.isHidden())
-
-
-def test_no_camera_runs_before_the_patient_agreed(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+def test_no_camera_runs_before_the_patient_agreed_nor_under_the_lock(
+    qtbot: QtBot, step: WalkingStep, visit: Visit
+) -> None:
     card = step.page.camera
     qtbot.waitUntil(card.isVisible)
     assert (card.facts.text(), card.notice.isVisible()) == ("Camera is off.", False)
@@ -102,49 +91,60 @@ def test_no_camera_runs_before_the_patient_agreed(qtbot: QtBot, step: WalkingSte
     card.switch.click()
     assert step.camera.feeds == ()
     assert card.pictures[0].pixmap().isNull()  # nothing of it stays in sight
-
-
-def test_a_walk_has_the_frames_that_came_during_it(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     switch_on(qtbot, step, visit)
-    walk(qtbot, step, visit, frames=20)
-    (stored,) = clips_of(qtbot, visit)
-    assert stored.frames >= 20
-    assert (stored.camera, stored.view, stored.width, stored.height) == (1, "from the left", 640, 360)
-    clip = opened(qtbot, visit, stored)
-    assert len(clip.pictures) == stored.frames
-    assert all(clip.pictures.jpeg(number)[:2] == b"\xff\xd8" for number in range(len(clip.pictures)))
-    assert (clip.stamped_s[1:] > clip.stamped_s[:-1]).all()
+    visit.controller.lock()
+    assert step.camera.feeds == ()
+    assert card.pictures[0].pixmap().isNull()
+
+
+@pytest.mark.parametrize("cameras", [[CAMERA, OTHER]])
+def test_a_walk_has_the_frames_that_came_during_it_in_a_clip_of_each_camera(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
+    switch_both_on(qtbot, step, visit)
+    walk(qtbot, step, visit, frames=10)
+    # both are looked into, though the second comes while the first is
+    qtbot.waitUntil(lambda: [clip.sync for clip in clips_of(qtbot, visit, 2)] == [FOUND, FOUND])
+    found = clips_of(qtbot, visit, 2)
+    assert [(one.camera, one.view, one.width, one.height) for one in found] == [
+        *((1, "from the left", 320, 180), (2, "from the right", 320, 240))
+    ]
+    for stored in found:
+        assert stored.frames >= 10
+        clip = opened(qtbot, visit, stored)
+        assert len(clip.pictures) == stored.frames
+        assert all(clip.pictures.jpeg(number)[:2] == b"\xff\xd8" for number in range(len(clip.pictures)))
+        assert (clip.stamped_s[1:] > clip.stamped_s[:-1]).all()
     (row,) = step.page.rows
     assert "video 0:0" in row.note
 
 
 @pytest.mark.parametrize("cameras", [[CAMERA, OTHER]])
-def test_two_cameras_have_a_clip_each(
+def test_a_camera_that_ends_costs_its_own_video_and_never_the_walk(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
     switch_both_on(qtbot, step, visit)
-    walk(qtbot, step, visit, frames=8)
-    clips_of(qtbot, visit, 2)
-    # both are looked into, though the second comes while the first is
-    qtbot.waitUntil(lambda: [clip.sync for clip in clips_of(qtbot, visit, 2)] == [FOUND, FOUND])
-    found = clips_of(qtbot, visit, 2)
-    assert [(clip.camera, clip.view) for clip in found] == [(1, "from the left"), (2, "from the right")]
-
-
-def test_a_camera_that_ends_costs_the_video_and_never_the_walk(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
-    switch_on(qtbot, step, visit)
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
-    (feed,) = step.camera.feeds
-    qtbot.waitUntil(lambda: feed.taken >= 5)
-    feed.kill()
-    qtbot.waitUntil(lambda: "goes on without video" in step.page.camera.notice.text)
+    start(qtbot, step, visit)
+    first, second = step.camera.feeds
+    qtbot.waitUntil(lambda: first.taken >= 3 and second.taken >= 3)
+    first.kill()
+    card = step.page.camera
+    qtbot.waitUntil(lambda: card.pictures[0].isHidden())
+    assert card.pictures[1].isVisible()
+    assert card.notice.text
+    assert "without video" not in card.notice.text
+    before = second.taken
+    qtbot.waitUntil(lambda: second.taken >= before + 5)
+    second.kill()
+    qtbot.waitUntil(lambda: "goes on without video" in card.notice.text)
     assert visit.recordings.is_recording
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
-    (stored,) = clips_of(qtbot, visit)
-    assert stored.frames >= 5
+    stop(qtbot, step, visit)
+    lost, later = clips_of(qtbot, visit, 2)
+    assert (lost.camera, later.camera) == (1, 2)
+    assert lost.frames >= 3
+    assert later.frames >= before + 5
     (recorded,) = visit.recordings.walks
     assert recorded.read_back is not None
     assert recorded.read_back.imu
@@ -167,13 +167,6 @@ def test_who_agrees_no_longer_has_no_video_left(qtbot: QtBot, step: WalkingStep,
     assert list(state.library.videos.glob("*.journal")) == []
 
 
-def test_under_the_lock_no_camera_runs(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
-    switch_on(qtbot, step, visit)
-    visit.controller.lock()
-    assert step.camera.feeds == ()
-    assert step.page.camera.pictures[0].pixmap().isNull()
-
-
 def opened(qtbot: QtBot, visit: Visit, stored: StoredClip) -> Clip:
     state = visit.controller.state
     assert state is not None
@@ -181,8 +174,8 @@ def opened(qtbot: QtBot, visit: Visit, stored: StoredClip) -> Clip:
 
 
 @pytest.mark.parametrize("cameras", [[CAMERA, CameraInfo("Real one", "/dev/video0", V4L2)]])
-def test_in_the_demonstration_nobodys_face_is_filmed(
-    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+def test_in_the_demonstration_nobodys_face_is_filmed_and_without_a_camera_there_is_no_card(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, cameras: list[CameraInfo], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its library lies plain on the disk."""
     qtbot.waitUntil(step.page.camera.isVisible)
@@ -194,43 +187,38 @@ def test_in_the_demonstration_nobodys_face_is_filmed(
     monkeypatch.setattr(type(state), "is_demonstration", property(lambda _state: True))
     step.camera.look()
     qtbot.waitUntil(lambda: step.camera.shown is not None and step.camera.shown.cameras == ("Test picture",))
+    cameras.clear()
+    step.camera.look()
+    qtbot.waitUntil(step.page.camera.isHidden)
 
 
-def test_a_full_disk_ends_the_video_and_never_the_walk(
+def test_a_full_disk_or_a_walk_that_the_library_does_not_know_yet_costs_its_video_only(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     switch_on(qtbot, step, visit)
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    notice = step.page.camera.notice
+    start(qtbot, step, visit)
     (feed,) = step.camera.feeds
     qtbot.waitUntil(lambda: feed.taken >= 3)
-    assert "disk" not in step.page.camera.notice.text
-    monkeypatch.setattr(ClipWriter, "has_ended", property(lambda _writer: True))
-    qtbot.waitUntil(lambda: "no space left for video" in step.page.camera.notice.text)
+    assert "disk" not in notice.text
+    with monkeypatch.context() as full:
+        full.setattr(ClipWriter, "has_ended", property(lambda _writer: True))
+        qtbot.waitUntil(lambda: "no space left for video" in notice.text)
     assert feed.writer is None
     assert visit.recordings.is_recording
     clips_of(qtbot, visit)
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
-
-
-def test_a_walk_that_the_library_does_not_know_yet_has_no_video(
-    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    switch_on(qtbot, step, visit)
+    stop(qtbot, step, visit)
     with monkeypatch.context() as without_row:
         without_row.setattr(Recorder, "has_row", property(lambda _recorder: False))
-        with qtbot.waitSignal(visit.recordings.begun):
-            step.on_intent(RUN)
-        assert "This walk has no video." in step.page.camera.notice.text
+        start(qtbot, step, visit)
+        assert "This walk has no video." in notice.text
         (feed,) = step.camera.feeds
         assert feed.writer is None
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
-    walk(qtbot, step, visit, frames=3)  # the next has one, and nothing more is said of the first
-    (stored,) = clips_of(qtbot, visit)
+    stop(qtbot, step, visit)
+    walk(qtbot, step, visit, frames=feed.taken + 3)  # the next has one, and nothing more is stated of the one before
+    *_, stored = clips_of(qtbot, visit, 2)
     assert stored.recording_id == visit.recordings.walks[-1].id
-    assert "no video" not in step.page.camera.notice.text
+    assert "no video" not in notice.text
 
 
 @pytest.mark.parametrize("cameras", [[CameraInfo("Square", "testsrc=size=320x240:rate=15", TEST_PICTURE)]])
@@ -245,28 +233,3 @@ def test_a_walk_begun_before_the_first_picture_states_what_the_camera_gives(
     (stored,) = clips_of(qtbot, visit)
     assert (stored.width, stored.height) == (320, 240)
     assert stored.rate_hz <= 15.0
-
-
-@pytest.mark.parametrize("cameras", [[CAMERA, OTHER]])
-def test_of_two_cameras_one_that_is_lost_costs_its_own_video_only(
-    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(clips, "sync_of", lambda *_, **__: FOUND)
-    switch_both_on(qtbot, step, visit)
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
-    first, second = step.camera.feeds
-    qtbot.waitUntil(lambda: first.taken >= 3 and second.taken >= 3)
-    first.kill()
-    card = step.page.camera
-    qtbot.waitUntil(lambda: card.pictures[0].isHidden())
-    assert card.pictures[1].isVisible()
-    assert card.notice.text
-    assert "without video" not in card.notice.text
-    before = second.taken
-    qtbot.waitUntil(lambda: second.taken >= before + 5)
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
-    lost, whole = clips_of(qtbot, visit, 2)
-    assert (lost.camera, whole.camera) == (1, 2)
-    assert whole.frames >= before + 5

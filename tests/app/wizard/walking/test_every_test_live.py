@@ -20,7 +20,7 @@ from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.demonstration_patient import DemonstrationPatient
 from devices.simulation.replay import DEMONSTRATION_NAMES
 from devices.simulation.walker import FreeMotion, Standing, Tissue, WalkerSettings
-from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.patient_time import PatientTime
 from tests.app.wizard.walking.shown_step import shown_step
 
@@ -47,14 +47,7 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     """Of a patient who has stood still."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7"))
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
-    acquisition = visit.sensors.acquisition
-    assert acquisition is not None
-    acquisition.ask(RecordingKind.STANDING)
-    with qtbot.waitSignal(visit.recordings.begun):
-        visit.recordings.begin(acquisition, RecordingKind.STANDING)
-    patient_time.wait(qtbot, 4.0)
-    with qtbot.waitSignal(visit.recordings.ended):
-        visit.recordings.stop()
+    record(qtbot, visit, RecordingKind.STANDING, 4.0)
     qtbot.waitUntil(lambda: bool(rests_of(visit.recordings.every)))
     visit.rests = rests_of(visit.recordings.every)
     with shown_step(qtbot, visit, 660) as step:
@@ -136,7 +129,7 @@ def test_a_course_of_another_length_is_not_valid_until_the_length_is_put_right(
     assert view.first.text().startswith("Timed Up and Go: ")
 
 
-def test_t_shows_what_it_arms_and_esc_turns_it_off(step: WalkingStep) -> None:
+def test_t_shows_what_it_arms_esc_turns_it_off_and_what_is_no_length_starts_none(step: WalkingStep) -> None:
     shown = []
     for _ in range(len(TimedProtocol) + 1):
         step.on_intent(NEXT_TEST)
@@ -150,9 +143,6 @@ def test_t_shows_what_it_arms_and_esc_turns_it_off(step: WalkingStep) -> None:
     assert step.on_intent(LEAVE)
     assert step.page.next.test.currentText() == "No timed test"
     assert not step.on_intent(LEAVE), "then Esc is whoever else's"
-
-
-def test_what_is_no_length_starts_no_test(step: WalkingStep) -> None:
     choose(step, TimedProtocol.UP_AND_GO)
     field = step.page.next.course.field.line_edit
     field.setFocus()

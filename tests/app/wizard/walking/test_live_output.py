@@ -17,19 +17,17 @@ from websockets.sync.client import connect
 
 from app.live_output.output import live_output
 from app.live_output.status import OutputSettings
-from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from core.body import LEG_JOINTS, Site
-from core.session import Patient, RecordingKind
+from core.session import Patient
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PatientTime
-from tests.app.wizard.walking.shown_step import shown_step
+from tests.app.wizard.walking.shown_step import calibrate, shown_step, start, stop
 from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.endurance  # walks that are recorded
 
-RUN = Intent(KeyAction.RUN)
 PLANTED = Patient(code="DEMO-QXZVQ", birth_year=1957, sex="female", prosthetic_side="left", affected_side="left")
 
 
@@ -46,27 +44,12 @@ def step(
     live_output.stop()
 
 
-def calibrate(qtbot: QtBot, visit: Visit, patient_time: PatientTime) -> None:
-    acquisition = visit.sensors.acquisition
-    assert acquisition is not None
-    with qtbot.waitSignal(visit.evaluation.done):
-        for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
-            acquisition.ask(kind)
-            with qtbot.waitSignal(visit.recordings.begun):
-                visit.recordings.begin(acquisition, kind)
-            patient_time.wait(qtbot, seconds)
-            with qtbot.waitSignal(visit.recordings.ended):
-                visit.recordings.stop()
-
-
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, seconds: float) -> None:
-    with qtbot.waitSignal(visit.recordings.begun):
-        assert step.on_intent(RUN)
+    start(qtbot, step, visit)
     patient_time.wait(qtbot, seconds)
     assert step.page.output.isVisible()
     assert step.page.output.text().startswith("Live output is on: ")
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
 
 
 class Listener(threading.Thread):
@@ -107,7 +90,7 @@ def lsl_texts() -> list[str]:
 def test_nothing_that_leaves_names_a_person_or_this_computer(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, tmp_path: Path
 ) -> None:
-    calibrate(qtbot, visit, patient_time)
+    calibrate(qtbot, visit)
     step.enter()
     listener = Listener(live_output.port)
     status = pylsl.StreamInlet(pylsl.resolve_byprop("name", "Gaitwright status", timeout=PATIENCE_S)[0])
@@ -157,7 +140,7 @@ def test_digits_of_a_measured_value_are_no_year_of_birth(text: str) -> None:
 def test_a_whole_walk_is_received_each_sample_once_where_it_was_switched_on_from_the_page(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
-    calibrate(qtbot, visit, patient_time)
+    calibrate(qtbot, visit)
     live_output.stop()
     step.enter()
     live_output.set_up(OutputSettings(has_websocket=True, port=0))

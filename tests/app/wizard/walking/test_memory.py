@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.editing.session_recording import SessionRecording
 from app.widgets.action_bar import BarState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep
@@ -16,6 +17,8 @@ from core.timed.protocols import TimedProtocol
 from tests.app.wizard.emulated_dots import dot_choice, open_dots
 from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
+
+pytestmark = pytest.mark.endurance  # radios and memories take their time
 
 RUN = Intent(KeyAction.RUN)
 FOR_EVER_NS = 10**15
@@ -67,6 +70,15 @@ def walk(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
     step.on_intent(RUN)
 
 
+def whole_walk(visit: Visit, radio: FastRadio) -> SessionRecording:
+    """The only walk, with every sample that the sensors have stored."""
+    (fetched,) = visit.recordings.walks
+    assert fetched.read_back is not None
+    stored = [len(dot.memory.files[0].ticks) for dot in radio.dots]
+    assert [len(block) for block in fetched.read_back.imu.values()] == stored
+    return fetched
+
+
 def walk_out_of_reach(qtbot: QtBot, visit: Visit, radio: FastRadio, step: WalkingStep) -> None:
     """A walk of which the second sensor sends a part, and is then out of reach."""
     radio.dots[1].faults.unreachable_after_drop_s = 1e6
@@ -75,7 +87,6 @@ def walk_out_of_reach(qtbot: QtBot, visit: Visit, radio: FastRadio, step: Walkin
     qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "")
 
 
-@pytest.mark.endurance
 def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
@@ -104,11 +115,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert step.note == "being fetched"
     assert [row.state for row in step.page.rows] == [WalkState.IN_SENSORS]
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1)
-    (fetched,) = visit.recordings.walks
-    assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [
-        len(dot.memory.files[0].ticks) for dot in radio.dots
-    ]
+    fetched = whole_walk(visit, radio)
     assert fetched.lacks == ()
     assert not any(dot.memory.cut_recordings for dot in radio.dots)
     assert step.page.memory.isHidden()
@@ -119,7 +126,6 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
         press(step, "Results")
 
 
-@pytest.mark.endurance
 def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
@@ -136,14 +142,9 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     press(step, "Fetch 1 walk")
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1)
     assert "Fetch 1 walk" not in texts(step.bar())[1]
-    (fetched,) = visit.recordings.walks
-    assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [
-        len(dot.memory.files[0].ticks) for dot in radio.dots
-    ]
+    whole_walk(visit, radio)
 
 
-@pytest.mark.endurance
 def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_is_before_it(
     qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
 ) -> None:
@@ -164,7 +165,6 @@ def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_is_before_it(
     assert [one.details.name for one in visit.recordings.walks] == ["walk 1", "walk 2"]
 
 
-@pytest.mark.endurance
 def test_a_visit_that_is_left_with_a_walk_in_the_sensors_ends(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
@@ -176,7 +176,6 @@ def test_a_visit_that_is_left_with_a_walk_in_the_sensors_ends(
     qtbot.waitUntil(lambda: visit.is_idle)
 
 
-@pytest.mark.endurance
 def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
@@ -195,7 +194,6 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     assert "Timed tests need" not in step.bar().note
 
 
-@pytest.mark.endurance
 def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
@@ -211,7 +209,6 @@ def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
     assert step.page.memory.isHidden()
 
 
-@pytest.mark.endurance
 def test_sensors_strapped_again_are_live_before_they_stand_still(
     qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
 ) -> None:

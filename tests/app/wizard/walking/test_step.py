@@ -22,17 +22,15 @@ from app.wizard.walking.walk_list import WalkState
 from app.wizard.worn_sensors import WornSensors
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
-from core.session import Patient, RecordingKind
+from core.session import Patient
 from core.targets import Target, TargetMeasure, TargetTally, tallies_of
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import BEHIND_S, PatientTime
 from tests.app.wizard.pressing import press
-from tests.app.wizard.walking.shown_step import shown_step
+from tests.app.wizard.walking.shown_step import RUN, calibrate, shown_step, start, stop
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
-
-RUN = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
@@ -44,25 +42,10 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
         yield step
 
 
-def calibrate(qtbot: QtBot, visit: Visit, patient_time: PatientTime) -> None:
-    acquisition = visit.sensors.acquisition
-    assert acquisition is not None
-    with qtbot.waitSignal(visit.evaluation.done):
-        for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
-            acquisition.ask(kind)
-            with qtbot.waitSignal(visit.recordings.begun):
-                visit.recordings.begin(acquisition, kind)
-            patient_time.wait(qtbot, seconds)
-            with qtbot.waitSignal(visit.recordings.ended):
-                visit.recordings.stop()
-
-
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, seconds: float) -> None:
-    with qtbot.waitSignal(visit.recordings.begun):
-        assert step.on_intent(RUN)
+    start(qtbot, step, visit)
     patient_time.wait(qtbot, seconds)
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
 
 
 def folds_sensors(step: WalkingStep) -> bool:
@@ -77,15 +60,12 @@ def states(step: WalkingStep) -> list[tuple[str, str, WalkState]]:
     return [(row.letter, row.label, row.state) for row in step.page.rows]
 
 
-def test_space_starts_and_stops_and_keeps(
-    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
-) -> None:
-    calibrate(qtbot, visit, patient_time)
+def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    calibrate(qtbot, visit)
     primary = step.bar().primary
     assert primary is not None
     assert (primary.text, primary.is_requested) == ("Start walk", True)
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     recording = step.bar().recording
     assert recording is not None
     assert recording.title == "Recording A Alignment A"
@@ -94,8 +74,7 @@ def test_space_starts_and_stops_and_keeps(
     qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5)
     assert set(step.page.live.knees) == set(step.page.live.ankles)
     assert step.page.live.cadence_steps_min > 60
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
     assert step.page.bench.isVisible()  # in the place of the question: the leg is prosthetic
     assert folds_sensors(step)
@@ -110,8 +89,7 @@ def test_space_starts_and_stops_and_keeps(
         step.on_intent(RUN)  # keeps it, and starts the next
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
     assert not folds_sensors(step)
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
     assert not bar_states_change(step)
@@ -140,7 +118,7 @@ def next_label(step: WalkingStep) -> str:
 def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
-    calibrate(qtbot, visit, patient_time)
+    calibrate(qtbot, visit)
     assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
     controls = step.page.patient_controls
     assert controls.isVisible()
@@ -176,20 +154,16 @@ def bar_states_change(step: WalkingStep) -> bool:
     return any(one.text.startswith("Walk with") for one in step.bar().others)
 
 
-def test_five_strides_find_the_ankles_axes_again(
-    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
-) -> None:
-    calibrate(qtbot, visit, patient_time)
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+def test_five_strides_find_the_ankles_axes_again(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    calibrate(qtbot, visit)
+    start(qtbot, step, visit)
     qtbot.waitUntil(lambda: bool(step.page.live.ankles))
     assert any(ankle.is_provisional for ankle in step.page.live.ankles.values())
     qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page.live.ankles.values()))
     looked_at = visit.evaluation.session
     assert looked_at is not None
     assert looked_at.recordings[-1].condition == "Alignment A"  # a part of it is at the bench under its own name
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     results = ResultsStep(visit)
     qtbot.addWidget(results.page)
     results.enter()  # what was evaluated last holds a part of this walk only
@@ -232,8 +206,7 @@ def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
     reached = [(tally,)]
     assert step.feedback is not None
     monkeypatch.setattr(step.feedback, "end_walk", lambda: reached.pop() if reached else ())
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(RUN)
         assert step.cannot_leave == "The walk is being loaded."
@@ -279,23 +252,20 @@ def test_digits_choose_what_the_next_walk_is_called(
 def test_a_silent_sensor_is_stated_and_so_is_its_return(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource
 ) -> None:
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     source.silence("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot: no signal for" in step.page.notice.text)
     assert "right ankle, right gait phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot: signal back after" in step.page.notice.text)
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 
 def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource, patient_time: PatientTime
 ) -> None:
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     patient_time.wait(qtbot, 4.0)
     assert "samples received" not in step.page.notice.text
     source.silence("DEMO-right_foot")
@@ -305,8 +275,7 @@ def test_a_lossy_radio_is_stated_with_counts_while_and_after_it_is_walked(
     qtbot.waitUntil(lambda: "samples received." in step.page.notice.text)
     assert step.page.notice.text.startswith("R foot: ")
     assert step.page.received.isHidden()
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     (row,) = step.page.received.rows
     assert row.site is Site.RIGHT_FOOT
     # what a reader has not passed on yet when the sensor falls silent or wakes belongs to the silence or not
@@ -357,8 +326,7 @@ def test_while_no_sensor_is_received_the_charts_go_on_with_a_gap(
     silent_since_s = shown[-1].now_s
     qtbot.waitUntil(lambda: shown[-1].now_s > silent_since_s)
     assert all(lane.silent_s[-1][1] is None for lane in shown[-1].lanes.values())
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
 
 

@@ -13,12 +13,12 @@ from core.body import Site
 from core.session import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
-from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.patient_time import PatientTime
-from tests.app.wizard.walking.shown_step import shown_step
+from tests.app.wizard.walking.shown_step import RUN, shown_step, start, stop
 from tests.simulated import session_of
 
-RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
+NEXT_TEST = Intent(KeyAction.NEXT_TEST)
 
 
 @pytest.fixture(scope="module")
@@ -34,14 +34,7 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: Patien
     """Of a patient who has stood still, entered, and looked at as the wizard does."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7"))
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
-    acquisition = visit.sensors.acquisition
-    assert acquisition is not None
-    acquisition.ask(RecordingKind.STANDING)
-    with qtbot.waitSignal(visit.recordings.begun):
-        visit.recordings.begin(acquisition, RecordingKind.STANDING)
-    patient_time.wait(qtbot, 4.0)
-    with qtbot.waitSignal(visit.recordings.ended):
-        visit.recordings.stop()
+    record(qtbot, visit, RecordingKind.STANDING, 4.0)
     with shown_step(qtbot, visit) as step:
         yield step
 
@@ -101,8 +94,7 @@ def test_a_key_at_the_tape_wins_and_is_kept(
 
 def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     step.on_intent(NEXT_TEST)
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     with qtbot.waitSignal(visit.recordings.ended):
         assert step.on_intent(Intent(KeyAction.LEAVE))
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
@@ -110,12 +102,10 @@ def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step:
     for _ in TimedProtocol:
         step.on_intent(NEXT_TEST)
     assert step.page.next.test.currentIndex() == 0
-    with qtbot.waitSignal(visit.recordings.begun):
-        step.on_intent(RUN)
+    start(qtbot, step, visit)
     assert not step.takes_clicker
     assert not step.page.timed.isVisible()
-    with qtbot.waitSignal(visit.recordings.ended):
-        step.on_intent(RUN)
+    stop(qtbot, step, visit)
     assert visit.recordings.walks[-1].details.test is None
     assert not step.page.timed_result.isVisible()
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy)
