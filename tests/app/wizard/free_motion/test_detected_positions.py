@@ -89,7 +89,9 @@ def test_positions_that_were_changed_by_one_button_come_back_with_their_doubt_wh
     assert {site: sensor.name for site, sensor in free.stored.placement.sensors.items()} == visit.sensors.sensor_at
 
 
-def test_without_a_doubt_the_primary_button_goes_on(visit: Visit, moved: FreeMotionStep) -> None:
+def test_without_a_doubt_the_primary_button_goes_on_and_a_change_by_hand_ends_one(
+    visit: Visit, moved: FreeMotionStep
+) -> None:
     bar = moved.bar()
     assert bar.primary is not None
     assert (bar.primary.text, bar.primary.is_enabled, bar.on_page) == ("Continue to walking", True, ())
@@ -97,6 +99,10 @@ def test_without_a_doubt_the_primary_button_goes_on(visit: Visit, moved: FreeMot
     assert (moved.page.swapped.isHidden(), moved.page.band.isHidden()) == (True, False)
     assert all(gauge.face.state is not GaugeState.NEEDS for gauge in moved.page.gauges.values())
     assert not any(tile.moves_like or tile.is_bad for tile in worn_tiles(visit.sensors).values())
+    visit.sensors.doubt(MIXED)
+    assert moved.is_in_doubt
+    visit.sensors.assign(visit.sensors.sensor_at[THIGH], SHANK)
+    assert not moved.is_in_doubt
 
 
 def test_sensors_that_look_swapped_take_the_hints_place_and_walking_waits_for_them(
@@ -138,7 +144,9 @@ def test_what_the_step_shows_is_spoken_while_it_is_in_sight(
     assert len(asked) == 2
 
 
-def test_gauges_of_swapped_sensors_show_no_figure_but_what_they_need(visit: Visit, moved: FreeMotionStep) -> None:
+def test_gauges_of_swapped_sensors_show_what_they_need_and_tiles_and_figure_what_moves_like_what(
+    visit: Visit, moved: FreeMotionStep
+) -> None:
     known = motion({joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS})
     visit.sensors.doubt({SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: SHANK})
     faces = gauge_faces(visit, known, None)
@@ -153,15 +161,6 @@ def test_gauges_of_swapped_sensors_show_no_figure_but_what_they_need(visit: Visi
         assert centre is not None
         assert (centre.figure, centre.share) == ("\N{EN DASH}", 0.0)
     assert faces[Joint.RIGHT_ANKLE].state is GaugeState.CENTRE
-    visit.sensors.doubt(MIXED)
-    moved.enter()
-    assert moved.page.gauges[Joint.LEFT_KNEE].face.note == "Needs both sensors"
-
-
-def test_the_tiles_and_the_figure_show_whose_place_a_swapped_sensor_moves_like(
-    visit: Visit, moved: FreeMotionStep
-) -> None:
-    visit.sensors.doubt({SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: SHANK})
     tiles = worn_tiles(visit.sensors)
     amber = {site: tile.words for site, tile in tiles.items() if tile.is_bad}
     assert amber == {SHANK: "moves like R thigh", Site.RIGHT_THIGH: "moves like L shank"}
@@ -171,6 +170,9 @@ def test_the_tiles_and_the_figure_show_whose_place_a_swapped_sensor_moves_like(
     doubted = moved.page.figure.grab().toImage()
     moved.page.figure.show_moves({})
     assert moved.page.figure.grab().toImage() != doubted  # the arrow
+    visit.sensors.doubt(MIXED)
+    moved.enter()
+    assert moved.page.gauges[Joint.LEFT_KNEE].face.note == "Needs both sensors"
 
 
 def test_positions_can_be_checked_and_kept_as_they_are(
@@ -199,12 +201,6 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     visit.sensors.doubt(MIXED)  # the motion still reports it
     assert not visit.sensors.detected
     sensors.deleteLater()
-
-
-def test_a_position_that_is_changed_by_hand_ends_the_doubt(visit: Visit, moved: FreeMotionStep) -> None:
-    visit.sensors.doubt(MIXED)
-    visit.sensors.assign(visit.sensors.sensor_at[THIGH], SHANK)
-    assert not moved.is_in_doubt
 
 
 def test_sensors_left_to_the_motion_after_it_are_found_by_another(visit: Visit, moved: FreeMotionStep) -> None:

@@ -33,6 +33,9 @@ from tests.app.wizard.pressing import press
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 SPACE = Intent(KeyAction.RUN)
+CLOSED = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
+SURE = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
+LOOSE = replace(SURE[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
 
 
 @pytest.fixture
@@ -69,14 +72,19 @@ def knows(step: FreeMotionStep) -> bool:
     return all(centre is not None and centre.share > 0 for centre in centres)
 
 
+def enter(qtbot: QtBot, step: FreeMotionStep) -> None:
+    """Until every gauge has a figure."""
+    step.enter()
+    ticks(qtbot, step, lambda: knows(step))
+
+
 def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     step.enter()
     assert step.page.band.hint.sentence == "Move either leg"
     ticks(qtbot, step, lambda: knows(step))
-    closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
-    show_message(step, worn, FreeMotionState(closed))
+    show_message(step, worn, FreeMotionState(CLOSED))
     with qtbot.waitSignal(step.done):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
@@ -95,9 +103,7 @@ def test_a_plateau_is_stated_and_left_to_the_therapist(
     step.enter()
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
     ticks(qtbot, step, lambda: step._estimator is not None)
-    joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
-    joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
-    show_message(step, worn, FreeMotionState(joints))
+    show_message(step, worn, FreeMotionState(CLOSED | {Joint.LEFT_KNEE: state(3.8, 6.0, is_plateau=True)}))
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Uncertainty no longer falls")
     assert not step._settled.isActive()
     bar = step.bar()
@@ -108,8 +114,7 @@ def test_a_plateau_is_stated_and_left_to_the_therapist(
 
 
 def test_stopping_early_states_its_price_and_goes_on(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
-    step.enter()
-    ticks(qtbot, step, lambda: knows(step))
+    enter(qtbot, step)
     bar = step.bar()
     assert bar.primary is not None
     assert (bar.primary.text, bar.primary.is_requested) == ("Stop early", False)
@@ -159,8 +164,7 @@ def test_a_replay_without_free_motion_states_so_and_what_did_not_move_does_not_c
 
 
 def test_one_leg_begins_again_while_the_motion_goes_on(qtbot: QtBot, step: FreeMotionStep) -> None:
-    step.enter()
-    ticks(qtbot, step, lambda: knows(step))
+    enter(qtbot, step)
     assert step.on_intent(Intent(KeyAction.RIGHT_LEG))
     ticks(qtbot, step, lambda: step._estimator is not None and step._estimator.state.repeated is Side.RIGHT)
     ticks(qtbot, step, lambda: True)
@@ -172,8 +176,7 @@ def test_one_leg_begins_again_while_the_motion_goes_on(qtbot: QtBot, step: FreeM
 def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, patient_time: PatientTime
 ) -> None:
-    step.enter()
-    ticks(qtbot, step, lambda: knows(step))
+    enter(qtbot, step)
     with qtbot.waitSignal(step.done):
         press(step)
     left = step.page.gauges[Joint.LEFT_KNEE].face.centre
@@ -206,8 +209,7 @@ def test_leaving_before_a_leg_has_moved_is_stated_and_does_not_count(
 def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
-    step.enter()
-    ticks(qtbot, step, lambda: knows(step))
+    enter(qtbot, step)
     with qtbot.waitSignal(step.reported) as reported:
         step.leave()
     assert reported.args[0].startswith("Free motion was left early. It is still used")
@@ -237,16 +239,13 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     received: list[Sound] = []
     monkeypatch.setattr(sounds, "play", received.append)
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="left"))
-    step.enter()
-    ticks(qtbot, step, lambda: knows(step))
-    closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
-    loose = replace(closed[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
-    show_message(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
+    enter(qtbot, step)
+    show_message(step, worn, motion(SURE | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
     left = step.page.gauges[Joint.LEFT_KNEE]
     ticks(qtbot, step, lambda: left.face.axis is not None and left.face.axis.figure == "3.8")
     assert Sound.READY in received
     received.clear()
-    show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
+    show_message(step, worn, FreeMotionState(SURE | {Joint.LEFT_KNEE: LOOSE}))
     with qtbot.waitSignal(step.done):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
         assert step.page.band.hint.sentence == "Left knee: not a hinge"
@@ -265,15 +264,14 @@ def test_the_knee_above_a_transtibial_prosthesis_is_none_that_has_to_be_a_hinge(
     assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")
     left, right = step.page.gauges[Joint.LEFT_KNEE], step.page.gauges[Joint.RIGHT_KNEE]
     ticks(qtbot, step, lambda: left.face.centre is not None and left.face.centre.share > 0)
-    closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
+    closed = SURE.copy()
     del closed[Joint.LEFT_ANKLE]
-    loose = replace(closed[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
     show_message(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
     ticks(qtbot, step, lambda: left.face.axis is not None and left.face.axis.figure == "3.8")
     assert left.face.axis is not None
     assert right.face.axis is not None
     assert left.face.axis.required == right.face.axis.required == "1.5°"
-    show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
+    show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: LOOSE}))
     with qtbot.waitSignal(step.done):
         ticks(qtbot, step, lambda: left.face.state is GaugeState.ENOUGH)
     assert step.note == "enough movement"
@@ -308,8 +306,7 @@ def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_nex
     """While the library has not answered, and once it was stopped."""
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.has_begun)
-    closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
-    show_message(step, worn, FreeMotionState(closed))
+    show_message(step, worn, FreeMotionState(CLOSED))
     ticks(qtbot, step, lambda: step._settled.isActive())
     with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(SPACE)
@@ -332,7 +329,7 @@ def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_nex
         pass
 
 
-def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
+def test_labels_that_are_kept_are_not_asked_about_again(step: FreeMotionStep, visit: Visit) -> None:
     pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
     step.enter()
     visit.sensors.doubt(swapped(*pair))
@@ -351,8 +348,8 @@ def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: Free
 def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
-    step.enter()
-    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
+    enter(qtbot, step)
+    assert visit.recordings.is_recording
     visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
     press(step)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
@@ -393,8 +390,8 @@ def test_sensors_that_are_mixed_up_are_detected_and_one_key_puts_them_right(
 def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_library(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, controller: LibraryController
 ) -> None:
-    step.enter()
-    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
+    enter(qtbot, step)
+    assert visit.recordings.is_recording
     visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
     press(step)
     with qtbot.waitSignal(visit.recordings.ended):
