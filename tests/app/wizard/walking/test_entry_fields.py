@@ -1,5 +1,7 @@
 """The next change by keys alone: positions by steps, programs and settings by what is typed, with what they were."""
 
+from dataclasses import replace
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -17,6 +19,7 @@ from tests.app.wizard.walking.bench_material import WALKED, recording
 KNEE, FOOT, PYLON = ProsthesisPart.KNEE_UNIT, ProsthesisPart.FOOT, ProsthesisPart.PYLON
 TO_2 = PartChange(KNEE, program_before="Walk 1", program="Walk 2")
 TO_50 = PartChange(KNEE, setting="Swing flexion", setting_before=45.0, setting_value=50.0)
+BOTH = replace(TO_2, setting="Swing flexion", setting_before=45.0, setting_value=50.0)
 Key = Qt.Key
 
 
@@ -102,14 +105,7 @@ def test_a_program_and_a_setting_are_typed_and_read_as_they_print(fields: EntryF
     QTest.keyClick(fields.setting_value.line_edit, Key.Key_Down)
     written = "Recorded as: Knee unit: program Walk 2, was Walk 1; knee unit: Swing flexion 50.5, was 45"
     assert fields.written.text() == written
-    both = PartChange(
-        KNEE,
-        program_before="Walk 1",
-        program="Walk 2",
-        setting="Swing flexion",
-        setting_before=45.0,
-        setting_value=50.5,
-    )
+    both = replace(BOTH, setting_value=50.5)
     assert entry.parts == (both,)
     entry.load(())
     fields.show_entry()
@@ -144,9 +140,7 @@ def test_what_is_no_number_is_no_setting(fields: EntryFields, entry: ChangeEntry
     assert fields.setting_value.text == typed  # it is not taken away
 
 
-def test_enter_in_a_field_is_done_with_it_and_presses_nothing(
-    qtbot: QtBot, fields: EntryFields, entry: ChangeEntry
-) -> None:
+def test_enter_in_a_field_is_done_with_it_and_presses_nothing(qtbot: QtBot, fields: EntryFields) -> None:
     passed_on: list[object] = []
     outer = QWidget()
     qtbot.addWidget(outer)
@@ -219,9 +213,7 @@ def test_a_program_is_undone_on_the_way_back() -> None:
 
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("is_compact", [False, True])
-def test_no_word_of_a_program_is_cut_in_a_language_as_long_as_german(
-    qtbot: QtBot, fields: EntryFields, entry: ChangeEntry, is_compact: bool
-) -> None:
+def test_no_word_of_a_program_is_cut_in_a_language_as_long_as_german(fields: EntryFields, is_compact: bool) -> None:
     fields.set_compact(is_compact)
     chosen(fields, EntryTopic(KNEE, is_program=True))
     fields.resize(fields.minimumSizeHint().expandedTo(fields.size()))
@@ -254,22 +246,7 @@ def test_esc_in_a_field_is_done_with_it(qtbot: QtBot, fields: EntryFields) -> No
 
 
 def test_two_entries_of_one_part_are_one_change(entry: ChangeEntry) -> None:
-    entry.load(
-        [
-            PartChange(PYLON, height_mm=3.0, text="spacer"),
-            PartChange(PYLON, height_mm=-1.0, turns=0.5, text="screw"),
-            TO_2,
-            TO_50,
-        ]
-    )
-    assert set(entry.parts) == {
-        PartChange(PYLON, height_mm=2.0, turns=0.5, text="spacer; screw"),
-        PartChange(
-            KNEE,
-            program_before="Walk 1",
-            program="Walk 2",
-            setting="Swing flexion",
-            setting_before=45.0,
-            setting_value=50.0,
-        ),
-    }
+    spacer = PartChange(PYLON, height_mm=3.0, text="spacer")
+    screw = PartChange(PYLON, height_mm=-1.0, turns=0.5, text="screw")
+    entry.load([spacer, screw, TO_2, TO_50])
+    assert set(entry.parts) == {PartChange(PYLON, height_mm=2.0, turns=0.5, text="spacer; screw"), BOTH}

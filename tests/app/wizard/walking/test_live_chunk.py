@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.live_output.chunks import LiveChunk
 from app.wizard.walking.estimator import WalkingEstimator
@@ -20,6 +21,7 @@ from core.verdicts.model import Verdict
 from tests.app.wizard.dressed_patient import Worn, in_blocks
 
 KNEE = Joint.LEFT_KNEE
+LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 GOOD = dict.fromkeys(LEG_JOINTS, Verdict.READ)
 
 
@@ -35,47 +37,24 @@ def given(
     verdict: Verdict = Verdict.READ,
     slips: tuple[Slip, ...] = (),
     implausible: tuple[Joint, ...] = (),
-) -> tuple[list[float], list[int]]:
+) -> str:
     """Angles and statuses of the left knee as they leave."""
     reported = WalkingState({KNEE: joint}, slips=slips)
     chunk = chunk_of(reported, {KNEE: joint}, {**GOOD, KNEE: verdict}, implausible, ()).angles[KNEE]
-    return chunk.angle_deg.tolist(), chunk.status.tolist()
+    return f"{chunk.angle_deg.round(6).tolist()} {chunk.status.tolist()}"
 
 
-@pytest.mark.parametrize(("verdict", "status"), [(Verdict.READ, 0), (Verdict.CARE, 1)])
-def test_an_angle_leaves_under_the_verdict_of_its_joint(verdict: Verdict, status: int) -> None:
-    angles, statuses = given(joint_of(10.0, 20.0), verdict)
-    assert angles == pytest.approx([10.0, 20.0])
-    assert statuses == [status, status]
-
-
-@pytest.mark.parametrize("verdict", [Verdict.NOT_REPORTED, Verdict.NOT_MEASURED])
-def test_an_angle_that_is_not_reported_leaves_without_its_number(verdict: Verdict) -> None:
-    angles, statuses = given(joint_of(10.0, 20.0), verdict)
-    assert all(map(math.isnan, angles))
-    assert statuses == [2, 2]
-
-
-def test_a_gap_has_no_number_and_the_samples_beside_it_stay() -> None:
-    angles, statuses = given(joint_of(10.0, math.nan, 20.0))
-    assert statuses == [0, 2, 0]
-    assert math.isnan(angles[1])
-    assert [angles[0], angles[2]] == pytest.approx([10.0, 20.0])
-
-
-def test_what_is_provisional_needs_care_and_is_not_made_better_by_it() -> None:
-    assert given(joint_of(10.0, is_provisional=True))[1] == [1]
-    assert given(joint_of(10.0, is_provisional=True), Verdict.NOT_REPORTED)[1] == [2]
-
-
-def test_a_joint_that_cannot_be_is_not_reported() -> None:
-    assert given(joint_of(10.0), implausible=(KNEE,))[1] == [2]
-    assert given(joint_of(10.0), implausible=(Joint.RIGHT_KNEE,))[1] == [0]
-
-
-@pytest.mark.parametrize(("site", "status"), [(Site.LEFT_SHANK, 2), (Site.LEFT_THIGH, 2), (Site.LEFT_FOOT, 0)])
-def test_a_strap_that_moved_takes_the_joints_beside_it(site: Site, status: int) -> None:
-    assert given(joint_of(10.0), slips=(Slip(site, 5.0, 0.2),))[1] == [status]
+def test_an_angle_leaves_under_the_verdict_of_its_joint(snapshot: SnapshotAssertion) -> None:
+    """Angles and statuses: 0 is good, 1 needs care, and 2 is not reported and has no number."""
+    two, one, provisional = joint_of(10.0, 20.0), joint_of(10.0), joint_of(10.0, is_provisional=True)
+    slipped = {f"{site}: its strap moved": given(one, slips=(Slip(site, 5.0, 0.2),)) for site in LEFT_LEG}
+    assert {str(verdict): given(two, verdict) for verdict in Verdict} | slipped | {
+        "a gap, and the samples beside it stay": given(joint_of(10.0, math.nan, 20.0)),
+        "provisional": given(provisional),
+        "provisional makes nothing better": given(provisional, Verdict.NOT_REPORTED),
+        "it cannot be": given(one, implausible=(KNEE,)),
+        "another cannot be": given(one, implausible=(Joint.RIGHT_KNEE,)),
+    } == snapshot
 
 
 def foot(*events: LiveEvent, is_doubtful: bool = False) -> LiveFoot:

@@ -3,7 +3,7 @@
 import math
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.patient_screen.controls import ControlsCard
 from app.system import sounds
@@ -25,7 +26,7 @@ from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.calibration.strap import Slip
 from core.gait.phases import Phase
 from core.live.stride_values import StrideValue
-from core.results import ZeroKind
+from core.results import JointCalibration, ZeroKind
 from core.targets import Target, TargetMeasure, TargetTally
 from tests.app.patient_screen.sound_detection import spans_s
 from tests.core.verdicts.built_walk import calibration
@@ -33,7 +34,6 @@ from tests.core.verdicts.built_walk import calibration
 KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
 BEAT = Target(TargetMeasure.CADENCE, None, 110)
 SURE = {joint: calibration(joint) for joint in LEG_JOINTS}
-ALL = LEG_SITES
 WORN = {f"DEMO-{site}": site for site in LEG_SITES}
 
 
@@ -102,6 +102,12 @@ def knee(*values: float, side: Side = Side.LEFT) -> list[tuple[TargetMeasure, Si
     return [(TargetMeasure.KNEE_SWING_PEAK, side, value) for value in values]
 
 
+def reach(qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, value: int) -> None:
+    """Show one stride, the first that is shown."""
+    estimator.show_message(*knee(value))
+    qtbot.waitUntil(lambda: feedback.view.last == (value,))
+
+
 def test_each_stride_of_what_is_aimed_at_is_shown_and_sounds_where_it_reached(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound]
 ) -> None:
@@ -133,8 +139,7 @@ def test_the_last_ten_are_kept_and_strides_of_either_foot_count_for_the_cadence(
 def test_a_silent_sensor_or_a_slipped_strap_of_that_leg_lets_it_wait_without_a_value(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound], gated: dict[str, Any]
 ) -> None:
-    estimator.show_message(*knee(60.0))
-    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    reach(qtbot, feedback, estimator, 60)
     estimator.show_message(**gated)
     feedback.judge(estimator.state)  # as thirty times a second
     assert feedback.view.is_waiting
@@ -148,36 +153,29 @@ def test_a_silent_sensor_or_a_slipped_strap_of_that_leg_lets_it_wait_without_a_v
     assert not feedback.view.is_waiting
 
 
-def test_what_befalls_the_other_leg_does_not_matter(feedback: PatientFeedback, estimator: Reported) -> None:
-    estimator.show_message(missing=(Site.RIGHT_SHANK,), slips=(Slip(Site.RIGHT_FOOT, 1.0, 0.3),))
-    feedback.judge(estimator.state)
-    assert not feedback.view.is_waiting
-
-
-def test_cadence_waits_only_where_no_foot_is_received(feedback: PatientFeedback, estimator: Reported) -> None:
-    card_of(feedback).target_set.emit(BEAT)
-    estimator.show_message(missing=(Site.RIGHT_FOOT,))
-    feedback.judge(estimator.state)
-    assert not feedback.view.is_waiting
-    estimator.show_message(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT))
-    feedback.judge(estimator.state)
-    assert feedback.view.is_waiting
-
-
-def test_cadence_waits_where_the_only_foot_that_is_received_disagrees_with_its_knee(
-    feedback: PatientFeedback, estimator: Reported
+@pytest.mark.parametrize(
+    ("target", "changes", "waits"),
+    [
+        (KNEE, {"missing": (Site.RIGHT_SHANK,), "slips": (Slip(Site.RIGHT_FOOT, 1.0, 0.3),)}, False),
+        (BEAT, {"missing": (Site.RIGHT_FOOT,)}, False),
+        (BEAT, {"missing": (Site.RIGHT_FOOT, Site.LEFT_FOOT)}, True),
+        (BEAT, {"missing": (Site.RIGHT_FOOT,), "doubtful": (Site.LEFT_FOOT,)}, True),
+    ],
+    ids=["the other leg", "cadence by one foot", "cadence by none", "cadence by one that disagrees with its knee"],
+)
+def test_it_waits_only_where_what_is_aimed_at_is_not_received(
+    feedback: PatientFeedback, estimator: Reported, target: Target, changes: dict[str, Any], waits: bool
 ) -> None:
-    card_of(feedback).target_set.emit(BEAT)
-    estimator.show_message(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
+    card_of(feedback).target_set.emit(target)
+    estimator.show_message(**changes)
     feedback.judge(estimator.state)
-    assert feedback.view.is_waiting
+    assert feedback.view.is_waiting is waits
 
 
 def test_a_walk_counts_its_own_strides_for_each_target(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
 ) -> None:
-    estimator.show_message(*knee(60.0))
-    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    reach(qtbot, feedback, estimator, 60)
     feedback.begin_walk()
     assert feedback.view.last == ()
     estimator.show_message(*knee(54.0, 55.0, 56.0))
@@ -213,8 +211,7 @@ STANDING = {side: LiveLane((PhaseSpan(Phase.FOOT_FLAT, 0.0, None),)) for side in
 def test_while_the_patient_is_standing_the_next_step_is_waited_for_and_between_steps_the_value_stays(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
 ) -> None:
-    estimator.show_message(*knee(60.0))
-    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    reach(qtbot, feedback, estimator, 60)
     estimator.show_message(lanes=STANDING, now_s=2.0)  # a foot is flat: of a slow stride
     feedback.look()
     assert shown(feedback) == 60
@@ -312,8 +309,7 @@ def test_f11_opens_it_full_and_what_was_chosen_comes_back(feedback: PatientFeedb
 def test_it_is_judged_though_no_page_ticks_as_under_the_manual(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
 ) -> None:
-    estimator.show_message(*knee(60.0))
-    qtbot.waitUntil(lambda: feedback.view.value == 60)
+    reach(qtbot, feedback, estimator, 60)
     estimator.show_message(missing=(Site.LEFT_SHANK,))
     qtbot.waitUntil(lambda: feedback.view.is_waiting)
 
@@ -337,8 +333,7 @@ def test_the_tone_is_off_by_choice_and_why_nothing_sounds_is_stated(
     monkeypatch.setattr(sounds, "play", received.append)
     card.tone.setChecked(False)
     assert "Sounds are off." not in status(feedback)
-    estimator.show_message(*knee(60.0))
-    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    reach(qtbot, feedback, estimator, 60)
     assert received == []
     card.tone.setChecked(True)
     estimator.show_message(*knee(61.0))
@@ -373,7 +368,7 @@ def test_the_samples_that_are_played_hold_one_tone_for_each_step_that_reached(
     assert np.abs(samples).max() > 1000.0
 
 
-def test_the_screen_is_closed_by_its_frame_and_opens_again(qtbot: QtBot, feedback: PatientFeedback) -> None:
+def test_the_screen_is_closed_by_its_frame_and_opens_again(feedback: PatientFeedback) -> None:
     assert feedback.window is not None
     feedback.metronome.start(100)
     feedback.window.close()  # as its frame's button does
@@ -407,30 +402,28 @@ def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
     assert feedback.window.windowTitle() == "Patient screen"
 
 
-def test_reasons_are_stated_in_words_of_what_is_gated_only() -> None:
-    assert reasons_against(LEG_SITES, ALL, SURE, frozenset()) == {}
-    reported = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
-    reasons = reasons_against(LEG_SITES, ALL, reported, frozenset({Side.RIGHT}))
-    assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
-        "There is no standing reference, so absolute angles are not reported"
-    )
-    assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) not in reasons
-    assert "prosthetic foot rolls on" in reasons[TargetMeasure.STANCE_RATIO, Side.LEFT]
-    assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "There is no foot sensor."
-    one_leg = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
-    reasons = reasons_against(one_leg, ALL, SURE, frozenset())
-    assert reasons[TargetMeasure.STANCE_RATIO, Side.LEFT] == "Both feet need a sensor."
-    assert reasons[TargetMeasure.FOOT_STRIKE, Side.RIGHT] == "This foot has no sensor."
-    assert (TargetMeasure.FOOT_STRIKE, Side.LEFT) not in reasons
-    without = tuple(site for site in LEG_SITES if site is not Site.RIGHT_THIGH)
-    reasons = reasons_against(LEG_SITES, without, SURE, frozenset())
-    assert [*reasons.values()] == [
-        "The sensors of this knee have not been still yet. Let the patient stand still first."
-    ]
-    assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
-    assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
-        "The knee angle is not known yet. It needs sensors on thigh and shank, and a free motion."
-    )
+def reasons(
+    worn: tuple[Site, ...] = LEG_SITES,
+    rested: tuple[Site, ...] = LEG_SITES,
+    calibration: Mapping[Joint, JointCalibration] = SURE,
+    prosthetic: frozenset[Side] = frozenset(),
+) -> dict[str, str]:
+    found = reasons_against(worn, rested, calibration, prosthetic)
+    return {" ".join(filter(None, (side, measure))): reason for (measure, side), reason in found.items()}
+
+
+def test_reasons_are_stated_in_words_of_what_is_gated_only(snapshot: SnapshotAssertion) -> None:
+    without_zero = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
+    assert {
+        "nothing": reasons(),
+        "no standing reference and a prosthetic foot": reasons(
+            calibration=without_zero, prosthetic=frozenset({Side.RIGHT})
+        ),
+        "no sensors": reasons((), (), {}),
+        "one leg": reasons(tuple(site for site in LEG_SITES if site.side is Side.LEFT)),
+        "a sensor that was not still": reasons(rested=tuple(one for one in LEG_SITES if one is not Site.RIGHT_THIGH)),
+        "not calibrated": reasons(calibration={}),
+    } == snapshot
 
 
 def test_a_walk_without_a_target_shows_the_steps_that_the_operator_sees(feedback: PatientFeedback) -> None:

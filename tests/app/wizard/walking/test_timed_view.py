@@ -2,9 +2,10 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
-import pytest
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.wizard.walking.timed_view import TimedView, TimedViewState, distance_words, status_words, time_text
 from app.wording.translation import use_language
@@ -19,35 +20,36 @@ WAITING = TimedViewState(LiveReadout(TEN, now_s=2.0), "Shoes, attempt 1", 2.0, m
 TIMING = TimedViewState(LiveReadout(TEN, 8.0, 3.0, distance_m=6.12), "Shoes, attempt 1", 8.44, math.nan)
 
 
-@pytest.mark.parametrize(
-    ("elapsed_s", "text"), [(0.0, "0.0"), (5.49, "5.4"), (99.94, "99.9"), (100.0, "1:40"), (214.9, "3:34")]
-)
-def test_the_time_is_cut_to_tenths_and_reported_in_minutes_from_100_s(elapsed_s: float, text: str) -> None:
-    assert time_text(elapsed_s) == text
+def test_the_time_is_cut_to_tenths_and_reported_in_minutes_from_100_s() -> None:
+    texts = [time_text(elapsed_s) for elapsed_s in (0.0, 5.49, 99.94, 100.0, 214.9)]
+    assert texts == ["0.0", "5.4", "99.9", "1:40", "3:34"]
 
 
-def test_what_the_test_is_doing_is_a_word() -> None:
-    assert status_words(WAITING) == "Stand still"
-    assert status_words(replace(WAITING, readout=replace(WAITING.readout, is_still=True))) == "Ready to walk"
-    chair = replace(WAITING, readout=LiveReadout(PlannedTest(TimedProtocol.UP_AND_GO)))
-    assert status_words(chair) == "Sit still"
-    assert status_words(TIMING) == "Clock runs"
-    assert status_words(replace(TIMING, end_s=12.0)) == "Finished"
+def test_what_the_test_is_doing_is_a_word(snapshot: SnapshotAssertion) -> None:
+    assert {
+        "before a walk": status_words(WAITING),
+        "still before a walk": status_words(replace(WAITING, readout=replace(WAITING.readout, is_still=True))),
+        "on a chair": status_words(replace(WAITING, readout=LiveReadout(PlannedTest(TimedProtocol.UP_AND_GO)))),
+        "timing": status_words(TIMING),
+        "over": status_words(replace(TIMING, end_s=12.0)),
+    } == snapshot
 
 
-def test_a_distance_that_cannot_be_reported_is_a_dash_with_its_reason() -> None:
-    assert distance_words(WAITING) == ("0.0", "")
-    assert distance_words(TIMING) == ("6.1", "")
-    silent = replace(TIMING, readout=replace(TIMING.readout, silent=(Site.LEFT_FOOT,)))
-    assert distance_words(silent) == ("\N{EN DASH}", "no signal: L foot")
-    lost = replace(TIMING.readout, distance_m=math.nan, reasons=(NotMeasured.NO_FEET,))
-    assert distance_words(replace(TIMING, readout=lost)) == ("\N{EN DASH}", "No foot sensor was worn")
+def test_a_distance_that_cannot_be_reported_is_a_dash_with_its_reason(snapshot: SnapshotAssertion) -> None:
+    def timing(**changes: Any) -> tuple[str, str]:
+        return distance_words(replace(TIMING, readout=replace(TIMING.readout, **changes)))
+
     use_language("de")
-    before = distance_words(WAITING)
+    in_german = distance_words(WAITING)
     use_language("en")
-    assert before == ("0,0", ""), "a point in German before the test, and a comma in it"
-    far = replace(TIMING, readout=replace(TIMING.readout, distance_m=362.4))
-    assert distance_words(far) == ("362", "")
+    assert {
+        "before": distance_words(WAITING),
+        "a comma in German also before the test": in_german,
+        "timing": timing(),
+        "a silent foot": timing(silent=(Site.LEFT_FOOT,)),
+        "no feet": timing(distance_m=math.nan, reasons=(NotMeasured.NO_FEET,)),
+        "far, without tenths": timing(distance_m=362.4),
+    } == snapshot
 
 
 def test_the_status_has_its_room_in_german(qtbot: QtBot) -> None:
