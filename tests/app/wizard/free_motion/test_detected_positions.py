@@ -49,8 +49,16 @@ def moved(
     step.leave()
 
 
+def recorded_at(visit: Visit) -> dict[Site, str]:
+    """The sensors that the free motion is of."""
+    free = visit.recordings.free_motion
+    assert free is not None
+    assert free.stored.placement is not None
+    return {site: sensor.name for site, sensor in free.stored.placement.sensors.items()}
+
+
 @pytest.mark.parametrize("detected", [{THIGH: SHANK, SHANK: THIGH}, MIXED], ids=["two", "three"])
-def test_detected_positions_are_used_by_one_button_of_the_page_and_the_step_goes_on(
+def test_detected_positions_are_used_by_one_button_and_come_back_with_their_doubt_when_that_is_undone(
     qtbot: QtBot, visit: Visit, moved: FreeMotionStep, detected: dict[Site, Site]
 ) -> None:
     visit.sensors.doubt(detected)
@@ -60,33 +68,17 @@ def test_detected_positions_are_used_by_one_button_of_the_page_and_the_step_goes
     ]
     assert moved.state is StepState.ATTENTION
     moved.enter()
+    moved.done.connect(moved.leave)  # as the wizard does
     before = dict(visit.sensors.site_of)
     with qtbot.waitSignals([moved.done, moved.offered, visit.worn.corrected]):
         moved.page.swapped.use.click()
     assert visit.sensors.site_of == {name: detected.get(site, site) for name, site in before.items()}
-    free = visit.recordings.free_motion
-    assert free is not None
-    assert free.stored.placement is not None
-    names = {site: sensor.name for site, sensor in free.stored.placement.sensors.items()}
-    assert names == visit.sensors.sensor_at  # what was recorded is of the new positions
+    assert recorded_at(visit) == visit.sensors.sensor_at  # what was recorded is of the new positions
     assert not visit.sensors.detected
-
-
-def test_positions_that_were_changed_by_one_button_come_back_with_their_doubt_when_that_is_undone(
-    qtbot: QtBot, visit: Visit, moved: FreeMotionStep
-) -> None:
-    visit.sensors.doubt(MIXED)
-    before = dict(visit.sensors.site_of)
-    moved.done.connect(moved.leave)  # as the wizard does
-    with qtbot.waitSignal(visit.worn.corrected):
-        press(moved)
     with qtbot.waitSignal(visit.worn.corrected):
         moved.undo()
-    assert (visit.sensors.site_of, visit.sensors.detected) == (before, MIXED)
-    free = visit.recordings.free_motion
-    assert free is not None
-    assert free.stored.placement is not None
-    assert {site: sensor.name for site, sensor in free.stored.placement.sensors.items()} == visit.sensors.sensor_at
+    assert (visit.sensors.site_of, visit.sensors.detected) == (before, detected)
+    assert recorded_at(visit) == visit.sensors.sensor_at
 
 
 def test_without_a_doubt_the_primary_button_goes_on_and_a_change_by_hand_ends_one(
@@ -122,6 +114,10 @@ def test_sensors_that_look_swapped_take_the_hints_place_and_walking_waits_for_th
     assert walking.cannot_enter == bar.note
     filled = [button for button in page.findChildren(VerbButton) if button.is_filled and not button.isHidden()]
     assert filled == [page.swapped.use]
+    visit.sensors.doubt({THIGH: SHANK, SHANK: THIGH})
+    moved.enter()
+    words = "Left thigh and left shank look swapped. These angles would be wrong: left knee and left ankle."
+    assert page.swapped.text == words
     visit.sensors.doubt({})
     moved.enter()
     assert (page.swapped.isHidden(), page.band.isHidden()) == (True, False)
@@ -200,19 +196,18 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     assert primary.text == "Continue to walking"
     visit.sensors.doubt(MIXED)  # the motion still reports it
     assert not visit.sensors.detected
+    moved.enter()
+    assert moved.page.swapped.isHidden()
     sensors.deleteLater()
 
 
-def test_sensors_left_to_the_motion_after_it_are_found_by_another(visit: Visit, moved: FreeMotionStep) -> None:
+def test_sensors_left_to_another_motion_that_shows_no_positions_lead_to_them(
+    qtbot: QtBot, visit: Visit, moved: FreeMotionStep
+) -> None:
     visit.sensors.leave_to_motion(True)
     moved.enter()
     assert visit.recordings.is_recording
     assert moved.bar().primary is not None
-
-
-def test_a_motion_that_shows_no_positions_leads_to_them(qtbot: QtBot, visit: Visit, moved: FreeMotionStep) -> None:
-    visit.sensors.leave_to_motion(True)
-    moved.enter()
     done: list[None] = []
     moved.done.connect(lambda: done.append(None))
     with qtbot.waitSignal(moved.reported) as reported:

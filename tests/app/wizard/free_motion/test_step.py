@@ -33,6 +33,7 @@ from tests.app.wizard.pressing import press
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 SPACE = Intent(KeyAction.RUN)
+WORN = {f"DEMO-{site}": site for site in LEG_SITES}
 CLOSED = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
 SURE = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
 LOOSE = replace(SURE[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
@@ -79,12 +80,12 @@ def enter(qtbot: QtBot, step: FreeMotionStep) -> None:
 
 
 def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     step.enter()
     assert step.page.band.hint.sentence == "Move either leg"
     ticks(qtbot, step, lambda: knows(step))
-    show_message(step, worn, FreeMotionState(CLOSED))
+    show_message(step, FreeMotionState(CLOSED))
     with qtbot.waitSignal(step.done):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
@@ -97,13 +98,11 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     assert (step.state, step.note) == (StepState.DONE, "enough movement")
 
 
-def test_a_plateau_is_stated_and_left_to_the_therapist(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
-) -> None:
+def test_a_plateau_is_stated_and_left_to_the_therapist(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
     step.enter()
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
     ticks(qtbot, step, lambda: step._estimator is not None)
-    show_message(step, worn, FreeMotionState(CLOSED | {Joint.LEFT_KNEE: state(3.8, 6.0, is_plateau=True)}))
+    show_message(step, FreeMotionState(CLOSED | {Joint.LEFT_KNEE: state(3.8, 6.0, is_plateau=True)}))
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Uncertainty no longer falls")
     assert not step._settled.isActive()
     bar = step.bar()
@@ -126,12 +125,12 @@ def test_stopping_early_states_its_price_and_goes_on(qtbot: QtBot, step: FreeMot
 
 
 def test_a_replay_that_has_ended_is_stated_and_is_recorded_again_from_its_beginning(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: step._estimator is not None)
     open_joints = motion({joint: state(3.8, 6.0) for joint in LEG_JOINTS})
-    show_message(step, worn, open_joints)
+    show_message(step, open_joints)
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "The replay has ended")
     bar = step.bar()
     assert bar.primary is not None
@@ -234,18 +233,18 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
 
 
 def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     received: list[Sound] = []
     monkeypatch.setattr(sounds, "play", received.append)
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="left"))
     enter(qtbot, step)
-    show_message(step, worn, motion(SURE | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
+    show_message(step, motion(SURE | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
     left = step.page.gauges[Joint.LEFT_KNEE]
     ticks(qtbot, step, lambda: left.face.axis is not None and left.face.axis.figure == "3.8")
     assert Sound.READY in received
     received.clear()
-    show_message(step, worn, FreeMotionState(SURE | {Joint.LEFT_KNEE: LOOSE}))
+    show_message(step, FreeMotionState(SURE | {Joint.LEFT_KNEE: LOOSE}))
     with qtbot.waitSignal(step.done):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
         assert step.page.band.hint.sentence == "Left knee: not a hinge"
@@ -255,7 +254,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
 
 
 def test_the_knee_above_a_transtibial_prosthesis_is_none_that_has_to_be_a_hinge(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     """Of the side alone it was required like a mechanical one, and then reported to be none."""
     below = {Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)}
@@ -266,12 +265,12 @@ def test_the_knee_above_a_transtibial_prosthesis_is_none_that_has_to_be_a_hinge(
     ticks(qtbot, step, lambda: left.face.centre is not None and left.face.centre.share > 0)
     closed = SURE.copy()
     del closed[Joint.LEFT_ANKLE]
-    show_message(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
+    show_message(step, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
     ticks(qtbot, step, lambda: left.face.axis is not None and left.face.axis.figure == "3.8")
     assert left.face.axis is not None
     assert right.face.axis is not None
     assert left.face.axis.required == right.face.axis.required == "1.5°"
-    show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: LOOSE}))
+    show_message(step, FreeMotionState(closed | {Joint.LEFT_KNEE: LOOSE}))
     with qtbot.waitSignal(step.done):
         ticks(qtbot, step, lambda: left.face.state is GaugeState.ENOUGH)
     assert step.note == "enough movement"
@@ -301,12 +300,12 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
 
 
 def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_next(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     """While the library has not answered, and once it was stopped."""
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.has_begun)
-    show_message(step, worn, FreeMotionState(CLOSED))
+    show_message(step, FreeMotionState(CLOSED))
     ticks(qtbot, step, lambda: step._settled.isActive())
     with qtbot.waitSignal(visit.recordings.ended):
         step.on_intent(SPACE)
@@ -319,7 +318,7 @@ def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_nex
     assert not step._motion.joints
     ticks(qtbot, step, lambda: visit.recordings.has_begun)
     still = {joint: replace(state(9.0, 60.0), moved_s=0.0) for joint in LEG_JOINTS}
-    show_message(step, worn, FreeMotionState(still))
+    show_message(step, FreeMotionState(still))
     ticks(qtbot, step, lambda: bool(step._motion.joints))
     step.on_intent(SPACE)
     for _ in range(6):
@@ -327,22 +326,6 @@ def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_nex
     assert step.note == note  # no leg moved, so the one before it stays in force
     with qtbot.waitSignal(visit.recordings.ended):
         pass
-
-
-def test_labels_that_are_kept_are_not_asked_about_again(step: FreeMotionStep, visit: Visit) -> None:
-    pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
-    step.enter()
-    visit.sensors.doubt(swapped(*pair))
-    step.enter()
-    assert step.page.swapped.text == (
-        "Left thigh and left shank look swapped. These angles would be wrong: left knee and left ankle."
-    )
-    visit.sensors.keep_labels()
-    step.enter()
-    assert step.page.swapped.isHidden()
-    visit.sensors.doubt(swapped(*pair))
-    step.enter()
-    assert step.page.swapped.isHidden()
 
 
 def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
@@ -412,7 +395,7 @@ def test_sensors_that_nobody_placed_are_placed_once_the_motion_shows(
     ticks(qtbot, step, lambda: visit.recordings.has_begun)  # from then on the motion is looked at
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Move the left leg first")
     assert states(step.page) == {GaugeState.OPEN}
-    show_message(step, worn)
+    show_message(step)
     ticks(qtbot, step, lambda: visit.sensors.site_of == worn)
 
 
@@ -467,13 +450,13 @@ def swapped(one: Site, other: Site) -> dict[Site, Site]:
     return {one: other, other: one}
 
 
-def show_message(step: FreeMotionStep, worn: dict[str, Site], motion: FreeMotionState | None = None) -> None:
+def show_message(step: FreeMotionStep, motion: FreeMotionState | None = None) -> None:
     """Let the step hear this of the motion: on a busy machine the estimator itself takes its time."""
-    step._estimator = Reported(worn, motion)  # type: ignore[assignment]  # as far as the step asks it
+    step._estimator = Reported(motion)  # type: ignore[assignment]  # as far as the step asks it
 
 
 class Reported:
     """An estimator that knows everything already."""
 
-    def __init__(self, site_of: dict[str, Site], motion: FreeMotionState | None = None) -> None:
-        self.state = FreeMotionView(motion or FreeMotionState(), site_of=site_of)
+    def __init__(self, motion: FreeMotionState | None = None) -> None:
+        self.state = FreeMotionView(motion or FreeMotionState(), site_of=WORN)

@@ -150,23 +150,6 @@ def test_a_camera_that_ends_costs_its_own_video_and_never_the_walk(
     assert recorded.read_back.imu
 
 
-def test_who_agrees_no_longer_has_no_video_left(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
-    switch_on(qtbot, step, visit)
-    walk(qtbot, step, visit, frames=3)
-    clips_of(qtbot, visit)
-    step.page.camera.switch.click()
-    assert step.page.camera.withdraw.isVisible()
-    step.page.camera.withdraw.click()
-    assert step.camera.dialog is not None
-    assert visit.clips.stored  # until it is confirmed
-    step.camera.dialog.answers["withdraw"].click()
-    qtbot.waitUntil(lambda: not visit.clips.stored)
-    assert not visit.clips.has_consent
-    state = visit.controller.state
-    assert state is not None
-    assert list(state.library.videos.glob("*.journal")) == []
-
-
 def opened(qtbot: QtBot, visit: Visit, stored: StoredClip) -> Clip:
     state = visit.controller.state
     assert state is not None
@@ -222,14 +205,26 @@ def test_a_full_disk_or_a_walk_that_the_library_does_not_know_yet_costs_its_vide
 
 
 @pytest.mark.parametrize("cameras", [[CameraInfo("Square", "testsrc=size=320x240:rate=15", TEST_PICTURE)]])
-def test_a_walk_begun_before_the_first_picture_states_what_the_camera_gives(
+def test_a_walk_begun_before_the_first_picture_has_a_video_until_the_patient_agrees_no_longer(
     qtbot: QtBot, step: WalkingStep, visit: Visit
 ) -> None:
-    qtbot.waitUntil(step.page.camera.isVisible)
-    step.page.camera.switch.click()
-    step.page.camera.agree.click()
+    card = step.page.camera
+    qtbot.waitUntil(card.isVisible)
+    card.switch.click()
+    card.agree.click()
     qtbot.waitUntil(lambda: bool(step.camera.feeds))
     walk(qtbot, step, visit, frames=8)
     (stored,) = clips_of(qtbot, visit)
     assert (stored.width, stored.height) == (320, 240)
     assert stored.rate_hz <= 15.0
+    card.switch.click()
+    assert card.withdraw.isVisible()
+    card.withdraw.click()
+    assert step.camera.dialog is not None
+    assert visit.clips.stored  # until it is confirmed
+    step.camera.dialog.answers["withdraw"].click()
+    qtbot.waitUntil(lambda: not visit.clips.stored)
+    assert not visit.clips.has_consent
+    state = visit.controller.state
+    assert state is not None
+    assert list(state.library.videos.glob("*.journal")) == []

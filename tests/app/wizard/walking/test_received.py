@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
-from app.wizard.losses import NOTHING
 from app.wizard.walk_messages import lossy_message
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.received_card import MOST_ROWS, ReceivedCard, ReceivedRow
@@ -22,25 +22,19 @@ LOSSY = SamplesReceived(1811, 1511, 3.01)
 WALK = WalkRow("1", "A", "barefoot", WalkState.KEPT)
 
 
-def test_one_clause_where_all_is_well() -> None:
-    assert received_clause({Site.LEFT_FOOT: WELL, Site.RIGHT_FOOT: WELL}) == "all samples received"
-    nearly = {Site.LEFT_FOOT: WELL, Site.RIGHT_FOOT: SamplesReceived(1000, 996, 0.0)}
-    assert received_clause(nearly) == "at least 99.6 % of the samples received"
-    assert received_clause({}) == ""
-
-
-def test_sensors_that_lost_samples_are_named() -> None:
-    counts = {Site.LEFT_FOOT: WELL, Site.RIGHT_FOOT: LOSSY, Site.RIGHT_SHANK: LOSSY}
-    assert received_clause(counts) == "samples lost: R foot and R shank"
-
-
-def test_a_loss_is_stated_while_it_happens() -> None:
-    what, then = lossy_message({Site.LEFT_FOOT: WELL, Site.RIGHT_FOOT: replace(LOSSY, longest_gap_s=0.0)})
-    assert what == "R foot: 1511 of 1811 samples received."
-    assert then.startswith("Recording continues.")
-    assert lossy_message({Site.LEFT_FOOT: WELL}) == NOTHING
-    assert lossy_message({Site.LEFT_FOOT: SamplesReceived(1000, 995, 0.0)}) == NOTHING
-    assert lossy_message({}) == NOTHING
+def test_samples_that_were_lost_are_stated_after_and_while_it_happens(snapshot: SnapshotAssertion) -> None:
+    left, right, shank = Site.LEFT_FOOT, Site.RIGHT_FOOT, Site.RIGHT_SHANK
+    nearly, scattered = SamplesReceived(1000, 996, 0.0), replace(LOSSY, longest_gap_s=0.0)
+    assert {
+        "all came": received_clause({left: WELL, right: WELL}),
+        "nearly all came": received_clause({left: WELL, right: nearly}),
+        "no sensors": received_clause({}),
+        "sensors that lost samples are named": received_clause({left: WELL, right: LOSSY, shank: LOSSY}),
+        "meanwhile": lossy_message({left: WELL, right: scattered}),
+        "meanwhile all came": lossy_message({left: WELL}),
+        "meanwhile nearly all came": lossy_message({left: SamplesReceived(1000, 995, 0.0)}),
+        "meanwhile no sensors": lossy_message({}),
+    } == snapshot
 
 
 def test_the_table_has_expected_received_and_the_longest_gap(qtbot: QtBot) -> None:
