@@ -368,33 +368,27 @@ def test_the_samples_that_are_played_hold_one_tone_for_each_step_that_reached(
     assert np.abs(samples).max() > 1000.0
 
 
-def test_the_screen_is_closed_by_its_frame_and_opens_again(feedback: PatientFeedback) -> None:
-    assert feedback.window is not None
-    feedback.metronome.start(100)
-    feedback.window.close()  # as its frame's button does
-    assert not feedback.is_open
-    assert card_of(feedback).isHidden()
-    assert feedback.metronome.beats_per_min == 0
-    feedback.toggle()
-    assert feedback.is_open
-
-
-def test_closed_it_neither_sounds_nor_counts(
+def test_closed_by_its_frame_it_neither_sounds_nor_counts_until_it_is_opened_again(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound]
 ) -> None:
     feedback.begin_walk()
+    feedback.metronome.start(100)
     window = feedback.window
     assert window is not None
     with qtbot.waitSignal(window.closed):
-        window.close()
+        window.close()  # as its frame's button does
     assert not window.isVisible()
+    was_open = feedback.is_open
+    assert card_of(feedback).isHidden()
+    assert feedback.metronome.beats_per_min == 0
     estimator.show_message(*knee(60.0))
     qtbot.wait(20)
     assert received == []
     assert feedback.end_walk() == ()
     feedback.toggle()
+    assert (was_open, feedback.is_open) == (False, True)
     assert feedback.window is not window
-    assert feedback.target == KNEE  # what was typed stays
+    assert aimed(feedback) == KNEE  # what was typed stays
 
 
 def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
