@@ -1,6 +1,5 @@
 """`batch` writes what `analyse` writes, does nothing twice, keeps what is done, and gives what failed."""
 
-import csv
 import json
 import shutil
 import sys
@@ -11,16 +10,19 @@ import pytest
 
 from app.cli.main import main
 from app.cohort.batch import done, run, task
-from app.cohort.batch.analysed_folder import write_analysed
+from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
 from app.cohort.batch.done import batch_at, read_mark
 from app.cohort.batch.software import software
+from core.results import Method
 from core.session import Patient
 from core.verdicts.sigmas import PUBLISHED, ErrorFigures, in_use
 from devices.files.session_folder import write_session
 from tests.app.batch_material import results_in, swinging_session, walked_session, write_swinging
 from tests.app.cohort.repeatability.own_study import own_study
+from tests.app.exports.written_tables import csv_rows
 
 BARE = ("--no-report", "--no-rrd", "--workers", "1")
+CHOICES = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
 
 
 @pytest.fixture(scope="module")
@@ -58,8 +60,7 @@ def again(place: Path, *more: str) -> int:
 
 
 def rows(place: Path, name: str = "parameters.csv") -> list[dict[str, str]]:
-    with (place / "out" / name).open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(place / "out" / name)
 
 
 def refusal(capsys: pytest.CaptureFixture[str]) -> str:
@@ -221,10 +222,6 @@ def test_what_is_no_number_of_workers_is_refused_as_usage(workers: str, capsys: 
 
 
 def test_a_worker_that_sees_other_folders_or_has_other_software_states_so(place: Path) -> None:
-    from app.cohort.batch.analysed_folder import AnalysisChoices
-    from core.results import Method
-
-    choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
     session, out = place / "in" / "deep" / "visit 000", place / "out"
     here = done.BatchFolder(out, read_mark(out) or "")
     same_path = done.BatchFolder(out, "the mark of the asking computer's own folder")
@@ -233,7 +230,7 @@ def test_a_worker_that_sees_other_folders_or_has_other_software_states_so(place:
         (here, place / "elsewhere", software(), "the worker here cannot access the session folder"),
         (here, session, "older", "has another version of Gaitwright"),
     ):
-        outcome = task.analyse_task(task.BatchTask("visit 000", folder, batch, choices, theirs))
+        outcome = task.analyse_task(task.BatchTask("visit 000", folder, batch, CHOICES, theirs))
         assert reason in outcome.failure
         assert outcome.record is None
 
@@ -241,9 +238,6 @@ def test_a_worker_that_sees_other_folders_or_has_other_software_states_so(place:
 def test_a_worker_judges_by_the_figures_of_whoever_asks_and_other_figures_make_other_results(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from app.cohort.batch.analysed_folder import AnalysisChoices
-    from core.results import Method
-
     judged: list[ErrorFigures] = []
 
     def noted(*args: Any) -> Any:
@@ -251,11 +245,10 @@ def test_a_worker_judges_by_the_figures_of_whoever_asks_and_other_figures_make_o
         return write_analysed(*args)
 
     monkeypatch.setattr(task, "write_analysed", noted)
-    choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
     session, made = place / "in" / "deep" / "visit 000", []
     with batch_at(place / "out") as folder:
         for figures in (PUBLISHED, own_study(1.5).figures, own_study(1.6).figures):
-            outcome = task.analyse_task(task.BatchTask("one", session, folder, choices, software(), figures=figures))
+            outcome = task.analyse_task(task.BatchTask("one", session, folder, CHOICES, software(), figures=figures))
             assert outcome.record is not None
             made.append(outcome.record.key)
     assert [one.study is not None for one in judged] == [False, True, True]

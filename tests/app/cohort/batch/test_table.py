@@ -1,6 +1,5 @@
 """The table holds what each session's summary.json holds, figure by figure with its verdict, and nobody's name."""
 
-import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ from app.cohort.batch.rows import COLUMNS, Row
 from app.cohort.batch.table import write_tables
 from devices.files.session_folder import write_session
 from tests.app.batch_material import walked_session, write_swinging
+from tests.app.exports.written_tables import csv_rows
 
 STATED_OF_PATIENT = ("MUSTER", "Muster", "Anna", "Keller", "Bern", "limped")
 VERDICTS = {"read", "care", "withheld", "not_measured"}
@@ -30,8 +30,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def rows_of(out: Path) -> list[dict[str, str]]:
-    with (out / "parameters.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(out / "parameters.csv")
 
 
 def test_every_figure_and_verdict_is_that_of_the_sessions_summary(out: Path) -> None:

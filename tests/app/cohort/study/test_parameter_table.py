@@ -2,6 +2,7 @@
 
 import math
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pyarrow as pa
@@ -14,19 +15,25 @@ from devices.files.refusal import FileRefusedError
 from tests.app.cohort.study.study_tables import MEASURE, row, write_rows
 
 
-@pytest.fixture
-def path(tmp_path: Path) -> Path:
-    return write_rows([row("a", 60.0), row("b", math.nan, "withheld")], tmp_path / 'it\'s a "table".parquet')
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("table") / 'it\'s a "table".parquet'
+    return write_rows([row("a", 60.0), row("b", math.nan, "withheld")], place)
 
 
-def asked(path: Path, sql: str) -> list[tuple[object, ...]]:
-    with ParameterTable.opened(path) as table:
-        return list(table.ask(sql).rows)
+@pytest.fixture(scope="module")
+def table(path: Path) -> Iterator[ParameterTable]:
+    with ParameterTable.opened(path) as opened:
+        yield opened
 
 
-def refused(path: Path, sql: str) -> str:
-    with ParameterTable.opened(path) as table, pytest.raises(FileRefusedError) as reported:
-        list(table.ask(sql).rows)
+def asked(table: ParameterTable, sql: str) -> list[tuple[object, ...]]:
+    return list(table.ask(sql).rows)
+
+
+def refused(table: ParameterTable, sql: str) -> str:
+    with pytest.raises(FileRefusedError) as reported:
+        asked(table, sql)
     assert "\n" not in str(reported.value)
     return str(reported.value)
 
@@ -41,13 +48,13 @@ def refused(path: Path, sql: str) -> str:
         ("VALUES (7)", 7),
     ],
 )
-def test_a_question_is_answered(path: Path, sql: str, found: object) -> None:
-    assert asked(path, sql)[0][0] == found
+def test_a_question_is_answered(table: ParameterTable, sql: str, found: object) -> None:
+    assert asked(table, sql)[0][0] == found
 
 
-def test_a_number_that_is_none_is_empty(path: Path) -> None:
-    assert asked(path, f"SELECT {MEASURE} FROM parameters ORDER BY session") == [(60.0,), (None,)]
-    assert asked(path, f"SELECT avg({MEASURE}), count({MEASURE}) FROM parameters") == [(60.0, 1)]
+def test_a_number_that_is_none_is_empty(table: ParameterTable) -> None:
+    assert asked(table, f"SELECT {MEASURE} FROM parameters ORDER BY session") == [(60.0,), (None,)]
+    assert asked(table, f"SELECT avg({MEASURE}), count({MEASURE}) FROM parameters") == [(60.0, 1)]
 
 
 def test_a_folder_of_a_batch_is_for_its_table(tmp_path: Path) -> None:
@@ -98,9 +105,8 @@ OUTSIDE = {
 }
 
 
-@pytest.mark.parametrize("what", OUTSIDE)
 def test_nothing_but_the_table_can_be_reached(
-    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
+    path: Path, table: ParameterTable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     somebodys_rows = pa.table({"a": [1]})  # which DuckDB would find by its name in the frames above
     folder = tmp_path / "beside"
@@ -110,14 +116,15 @@ def test_nothing_but_the_table_can_be_reached(
     secret.write_text("name\nnobody's business\n")
     before = path.read_bytes()
     places = {"out": folder / "out", "secret": secret, "folder": folder, "table": path}
-    sql = OUTSIDE[what].format(**{name: str(place).replace("'", "''") for name, place in places.items()})
-    assert "business" not in refused(path, sql)
-    assert os.listdir(folder) == ["secret.csv"]  # noqa: PTH208 - names are enough
-    assert path.read_bytes() == before
+    quoted = {name: str(place).replace("'", "''") for name, place in places.items()}
+    for what, sql in OUTSIDE.items():
+        assert "business" not in refused(table, sql.format(**quoted)), what
+        assert os.listdir(folder) == ["secret.csv"], what  # noqa: PTH208 - names are enough
+        assert path.read_bytes() == before, what
     assert somebodys_rows.num_rows == 1
 
 
-def test_the_configuration_is_locked_down(path: Path) -> None:
+def test_the_configuration_is_locked_down(table: ParameterTable) -> None:
     required = {
         "enable_external_access": "false",
         "lock_configuration": "true",
@@ -132,7 +139,7 @@ def test_the_configuration_is_locked_down(path: Path) -> None:
         "threads": "2",
     }
     names = ", ".join(f"'{name}'" for name in required)
-    found = asked(path, f"SELECT name, coalesce(value, '') FROM duckdb_settings() WHERE name IN ({names})")
+    found = asked(table, f"SELECT name, coalesce(value, '') FROM duckdb_settings() WHERE name IN ({names})")
     assert {str(name): str(value) for name, value in found} == required
 
 
@@ -149,8 +156,10 @@ def test_the_configuration_is_locked_down(path: Path) -> None:
         ("PIVOT parameters ON side USING count(*)", "PIVOT without IN"),
     ],
 )
-def test_what_cannot_be_answered_is_named_in_one_line_without_a_mark(path: Path, sql: str, named: str) -> None:
-    stated = refused(path, sql)
+def test_what_cannot_be_answered_is_named_in_one_line_without_a_mark(
+    table: ParameterTable, sql: str, named: str
+) -> None:
+    stated = refused(table, sql)
     assert named in stated
     assert "Error:" not in stated
     assert "!" not in stated
@@ -160,9 +169,11 @@ def test_what_cannot_be_answered_is_named_in_one_line_without_a_mark(path: Path,
     "sql",
     ["SELECT list(range) FROM range(1000000000)", "SELECT length(repeat('x', 4000000000))"],
 )
-def test_a_question_that_takes_too_much_memory_is_refused_and_the_next_is_answered(path: Path, sql: str) -> None:
-    assert "memory" in refused(path, sql)
-    assert asked(path, "SELECT count(*) FROM parameters") == [(2,)]
+def test_a_question_that_takes_too_much_memory_is_refused_and_the_next_is_answered(
+    table: ParameterTable, sql: str
+) -> None:
+    assert "memory" in refused(table, sql)
+    assert asked(table, "SELECT count(*) FROM parameters") == [(2,)]
 
 
 @pytest.mark.parametrize(
@@ -172,11 +183,10 @@ def test_a_question_that_takes_too_much_memory_is_refused_and_the_next_is_answer
         "WITH RECURSIVE t(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM t) SELECT count(*) FROM t",
     ],
 )
-def test_a_question_that_never_ends_is_ended(path: Path, monkeypatch: pytest.MonkeyPatch, sql: str) -> None:
-    with ParameterTable.opened(path) as table:
-        monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.2)
-        with pytest.raises(FileRefusedError, match="this query exceeds the time limit"):
-            table.ask(sql)
+def test_a_question_that_never_ends_is_ended(table: ParameterTable, monkeypatch: pytest.MonkeyPatch, sql: str) -> None:
+    monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.2)
+    with pytest.raises(FileRefusedError, match="this query exceeds the time limit"):
+        table.ask(sql)
 
 
 def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
