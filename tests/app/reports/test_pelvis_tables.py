@@ -1,6 +1,5 @@
 """What a sensor on the pelvis adds to the tables and to summary.json."""
 
-import csv
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +16,7 @@ from core.verdicts.gates import judged
 from core.verdicts.model import GateReason, Verdict
 from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import Tissue
+from tests.app.exports.written_tables import csv_rows
 from tests.core.hip.hip_sessions import analysed, with_hip
 
 HIP_GATES = ("hip_disagreement", "hip_centre", "hips_apart")
@@ -31,14 +31,9 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def test_angles_hold_hips_and_pelvis(results: Path) -> None:
     walk = analysed(late_s=0.04)[1].recordings[-1]
-    table = rows(results / "walk_1" / "angles.csv")
+    table = csv_rows(results / "walk_1" / "angles.csv")
     found = [float(row["right_hip_deg"] or "nan") for row in table]
     assert found == pytest.approx(np.rad2deg(walk.hips[Joint.RIGHT_HIP].angle_rad), abs=1e-5, nan_ok=True)
     assert {row["left_hip_status"] for row in table} == {"read"}
@@ -48,7 +43,7 @@ def test_angles_hold_hips_and_pelvis(results: Path) -> None:
 
 
 def test_strides_hold_figures_of_hips_and_pelvis(results: Path) -> None:
-    used = [row for row in rows(results / "walk_1" / "strides.csv") if row["used"] == "true"]
+    used = [row for row in csv_rows(results / "walk_1" / "strides.csv") if row["used"] == "true"]
     assert {row["side"] for row in used} == set(Side)
     for row in used:
         range_deg = float(row["hip_range_deg"])
@@ -57,7 +52,7 @@ def test_strides_hold_figures_of_hips_and_pelvis(results: Path) -> None:
 
 
 def test_every_column_is_explained(results: Path) -> None:
-    explained = {(row["file"], row["column"]) for row in rows(results / "columns.csv")}
+    explained = {(row["file"], row["column"]) for row in csv_rows(results / "columns.csv")}
     for file in ("angles.csv", "strides.csv", "cycles.csv"):
         with (results / "walk_1" / file).open(encoding="utf-8") as table:
             for name in table.readline().strip().split(","):
@@ -71,7 +66,7 @@ def test_every_column_is_explained(results: Path) -> None:
 
 def test_mean_curves_of_hips_and_their_abduction_are_those_of_the_strides_used(results: Path) -> None:
     walk = analysed(late_s=0.04)[1].recordings[-1]
-    table = rows(results / "walk_1" / "cycles.csv")
+    table = csv_rows(results / "walk_1" / "cycles.csv")
     for side in Side:
         gait = walk.gait[side]
         mean = np.rad2deg(gait.cycles[hip_of(side)][gait.strides.is_used].mean(axis=0))
@@ -82,7 +77,7 @@ def test_mean_curves_of_hips_and_their_abduction_are_those_of_the_strides_used(r
 
 
 def test_differences_of_hips_and_pelvis_have_no_published_figure(results: Path) -> None:
-    reported = {row["parameter"]: row for row in rows(results / "sides.csv")}
+    reported = {row["parameter"]: row for row in csv_rows(results / "sides.csv")}
     of_hips = [row for name, row in reported.items() if name.startswith(("hip", "pelvis"))]
     assert len(of_hips) == 11
     for row in of_hips:
@@ -95,7 +90,7 @@ def test_differences_of_hips_and_pelvis_have_no_published_figure(results: Path) 
 def test_what_is_not_reported_of_a_hip_is_empty_and_its_status_states_so(tmp_path: Path) -> None:
     made, analysis = analysed(late_s=0.04)
     write_results(made.session, with_hip(analysis, Joint.LEFT_HIP, margin=1.2), tmp_path)
-    cycles, strides = rows(tmp_path / "walk_1" / "cycles.csv"), rows(tmp_path / "walk_1" / "strides.csv")
+    cycles, strides = csv_rows(tmp_path / "walk_1" / "cycles.csv"), csv_rows(tmp_path / "walk_1" / "strides.csv")
     for part in ("left_hip", "left_hip_abduction"):
         assert {row[f"{part}_mean_deg"] for row in cycles} == {""}
         assert {row[f"{part}_status"] for row in cycles} == {"withheld"}

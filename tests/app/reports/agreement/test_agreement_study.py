@@ -21,6 +21,7 @@ from devices.files.references.reading import read_reference
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
 from devices.simulation.walker import SessionTruth
+from tests.app.changed_analysis import recalibrated
 from tests.app.reports.agreement.agreement_material import PPM, made, rows_of, write_reference
 from tests.simulated import analysis_of
 
@@ -28,26 +29,25 @@ TURNED = (Joint.RIGHT_KNEE,)
 
 
 @pytest.fixture(scope="module")
-def simulated() -> tuple[Session, SessionTruth, Analysis]:
-    session, truth = made()
-    assert isinstance(session, Session)
-    return session, truth, analysis_of(session)
+def truth() -> SessionTruth:
+    return made()[1]
 
 
 @pytest.fixture(scope="module")
-def study(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path_factory: pytest.TempPathFactory
-) -> AgreementStudy:
-    _, truth, analysis = simulated
+def analysis() -> Analysis:
+    session, _ = made()
+    assert isinstance(session, Session)
+    return analysis_of(session)
+
+
+@pytest.fixture(scope="module")
+def study(truth: SessionTruth, analysis: Analysis, tmp_path_factory: pytest.TempPathFactory) -> AgreementStudy:
     rows = [f"{walk},{row}" for walk in ("walk 1", "walk 2") for row in rows_of(truth, walk, turned=TURNED)]
     path = write_reference(tmp_path_factory.mktemp("agree") / "ref.csv", rows, first="recording,")
     return study_of(analysis, [("ref.csv", read_reference(path))])
 
 
-def test_the_figures_are_those_of_the_truth(
-    study: AgreementStudy, simulated: tuple[Session, SessionTruth, Analysis]
-) -> None:
-    _, truth, analysis = simulated
+def test_the_figures_are_those_of_the_truth(study: AgreementStudy, truth: SessionTruth, analysis: Analysis) -> None:
     for walk in study.walks:
         (own,) = [one for one in analysis.recordings if one.name == walk.recording.name]
         for joint in LEG_JOINTS:
@@ -78,9 +78,8 @@ def trials(rows: list[str], tmp_path: Path, name: str) -> tuple[str, ReferenceFi
 
 
 def test_files_without_names_find_their_walks_by_the_motion(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+    truth: SessionTruth, analysis: Analysis, tmp_path: Path
 ) -> None:
-    _, truth, analysis = simulated
     files = [trials(rows_of(truth, f"walk {k}", later_s=50.0 * k), tmp_path, f"trial{5 - k}.csv") for k in (1, 2)]
     found = study_of(analysis, files)
     assert {w.recording.name: w.reference.file for w in found.walks if w.reference} == {
@@ -93,8 +92,7 @@ def test_files_without_names_find_their_walks_by_the_motion(
     assert alone.left_over == ("walk 2",)
 
 
-def test_one_long_trial_holds_both_walks(simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path) -> None:
-    _, truth, analysis = simulated
+def test_one_long_trial_holds_both_walks(truth: SessionTruth, analysis: Analysis, tmp_path: Path) -> None:
     rows = [*rows_of(truth, "walk 2", later_s=5.0), *rows_of(truth, "walk 1", later_s=60.0)]
     found = study_of(analysis, [trials(rows, tmp_path, "all.csv")])
     offsets = {w.recording.name: w.alignment.clock.offset_s for w in found.walks if w.alignment}
@@ -102,11 +100,8 @@ def test_one_long_trial_holds_both_walks(simulated: tuple[Session, SessionTruth,
     assert offsets["walk 2"] == pytest.approx(5.0, abs=0.002)
 
 
-def test_a_walk_of_another_name_is_not_compared(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
-) -> None:
+def test_a_walk_of_another_name_is_not_compared(truth: SessionTruth, analysis: Analysis, tmp_path: Path) -> None:
     """Its name states which walk it is, so a better fit elsewhere is no reason to take it for another."""
-    _, truth, analysis = simulated
     path = write_reference(
         tmp_path / "ref.csv", [f"walk 1,{row}" for row in rows_of(truth, "walk 1")], first="recording,"
     )
@@ -123,9 +118,7 @@ def test_a_walk_of_another_name_is_not_compared(
         ("none", "it contains no joint and the session contains left_ankle, left_knee"),
     ],
 )
-def test_what_cannot_be_compared_is_refused_with_its_reason(
-    simulated: tuple[Session, SessionTruth, Analysis], what: str, stated: str
-) -> None:
+def test_what_cannot_be_compared_is_refused_with_its_reason(analysis: Analysis, what: str, stated: str) -> None:
     time_s = np.arange(0.0, 1.2 if what == "short" else 12.0, 0.01)
     rng = np.random.default_rng(1)
     smooth = np.convolve(rng.normal(0, 3.0, len(time_s)), np.ones(40) / 40, "same")
@@ -133,19 +126,12 @@ def test_what_cannot_be_compared_is_refused_with_its_reason(
     angles = {} if what == "none" else {Joint.LEFT_KNEE: (time_s, angle)}
     reference = ReferenceFile("csv", "angles", (ReferenceTrial(angles=angles),))
     with pytest.raises(FileRefusedError, match=stated) as refused:
-        study_of(simulated[2], [("ref.csv", reference)])
+        study_of(analysis, [("ref.csv", reference)])
     assert str(refused.value).startswith("ref.csv: ")
 
 
-def test_without_a_zero_there_is_no_z(simulated: tuple[Session, SessionTruth, Analysis], study: AgreementStudy) -> None:
-    _, _, analysis = simulated
-    bare = replace(
-        analysis,
-        calibrations=tuple(
-            replace(one, joints={joint: replace(found, zero=ZeroKind.NONE) for joint, found in one.joints.items()})
-            for one in analysis.calibrations
-        ),
-    )
+def test_without_a_zero_there_is_no_z(analysis: Analysis, study: AgreementStudy) -> None:
+    bare = recalibrated(analysis, zero=ZeroKind.NONE)
     (walk, _) = study.walks
     assert walk.reference is not None
     reference = ReferenceFile("csv", "angles", (walk.reference.trial,))
@@ -155,9 +141,8 @@ def test_without_a_zero_there_is_no_z(simulated: tuple[Session, SessionTruth, An
 
 
 def test_left_and_right_exchanged_is_stated_and_where_they_are_not_it_is_not(
-    simulated: tuple[Session, SessionTruth, Analysis], study: AgreementStudy
+    analysis: Analysis, study: AgreementStudy
 ) -> None:
-    _, _, analysis = simulated
     assert not any(walk.is_exchanged for walk in study.walks)
     assert study.walks[0].reference is not None
     trial = study.walks[0].reference.trial
@@ -176,11 +161,10 @@ def write_for_gait2392(walk: RecordingAnalysis, is_simulated: bool, path: Path) 
 
 @pytest.mark.parametrize("write", [write_c3d, write_for_gait2392])
 def test_our_own_exports_agree_with_us(
-    simulated: tuple[Session, SessionTruth, Analysis],
+    analysis: Analysis,
     write: Callable[[RecordingAnalysis, bool, Path], str],
     tmp_path: Path,
 ) -> None:
-    _, _, analysis = simulated
     (walk,) = [one for one in analysis.recordings if one.name == "walk 2"]
     path = tmp_path / "export.c3d"  # the name that its library insists on; it gives nothing to the reader
     write(walk, True, path)
@@ -196,9 +180,9 @@ def test_our_own_exports_agree_with_us(
 
 
 def test_events_of_the_reference_are_found_and_strides_are_as_long(
-    simulated: tuple[Session, SessionTruth, Analysis],
+    truth: SessionTruth,
+    analysis: Analysis,
 ) -> None:
-    _, truth, analysis = simulated
     feet = truth.recordings["walk 1"].feet
     events = {
         side: {"initial_contact": foot.events.initial_contact_s + 20.0, "toe_off": foot.events.toe_off_s + 20.0}
@@ -308,9 +292,8 @@ def passes(rows: list[str], *parts: tuple[float, float]) -> list[list[str]]:
 
 
 def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_stated(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+    truth: SessionTruth, analysis: Analysis, tmp_path: Path
 ) -> None:
-    _, truth, analysis = simulated
     rows = rows_of(truth, "walk 1")
     parts = passes(rows, (0.05, 0.45), (0.6, 0.95))
     found = study_of(analysis, [trials(part, tmp_path, f"pass{k}.csv") for k, part in enumerate(parts)])
@@ -336,9 +319,8 @@ def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_stated(
 
 
 def test_a_reference_of_markers_is_named_as_such_and_one_of_angles_is_not(
-    simulated: tuple[Session, SessionTruth, Analysis], study: AgreementStudy, tmp_path: Path
+    truth: SessionTruth, analysis: Analysis, study: AgreementStudy, tmp_path: Path
 ) -> None:
-    _, truth, analysis = simulated
     name, file = trials(rows_of(truth, "walk 1"), tmp_path, "walk.c3d")
     of_markers = study_of(analysis, [(name, replace(file, source="markers"))])
     sentence = "walk.c3d holds markers and no joint angles. Its angles were computed from the markers"
@@ -350,9 +332,8 @@ def test_a_reference_of_markers_is_named_as_such_and_one_of_angles_is_not(
 
 
 def test_a_trial_of_times_that_another_shows_is_left_over(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+    truth: SessionTruth, analysis: Analysis, tmp_path: Path
 ) -> None:
-    _, truth, analysis = simulated
     rows = rows_of(truth, "walk 1")
     parts = passes(rows, (0.05, 0.95), (0.4, 0.8))
     names = ("walk 1.csv", "walk_1.csv")  # its name and its folder's, so that no other walk is tried
@@ -363,9 +344,8 @@ def test_a_trial_of_times_that_another_shows_is_left_over(
 
 
 def test_gaps_of_the_reference_are_counted_and_a_strap_that_slipped_is(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+    truth: SessionTruth, analysis: Analysis, tmp_path: Path
 ) -> None:
-    _, truth, analysis = simulated
     rows = rows_of(truth, "walk 1")
     (walk, *_) = study_of(analysis, [trials([*rows[:400], *rows[460:]], tmp_path, "gap.csv")]).walks
     used = walk.used[Joint.LEFT_KNEE]
@@ -381,19 +361,15 @@ def test_gaps_of_the_reference_are_counted_and_a_strap_that_slipped_is(
 
 
 def test_a_reference_of_twenty_samples_a_second_is_used_throughout(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+    truth: SessionTruth, analysis: Analysis, tmp_path: Path
 ) -> None:
-    _, truth, analysis = simulated
     (walk, *_) = study_of(analysis, [trials(rows_of(truth, "walk 1", hz=20.0), tmp_path, "slow.csv")]).walks
     for joint in LEG_JOINTS:
         assert walk.used[joint].in_gaps == 0
         assert walk.used[joint].used > 0.9 * walk.used[joint].recorded
 
 
-def test_both_parts_of_our_own_motion_file_are_compared(
-    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
-) -> None:
-    _, _, analysis = simulated
+def test_both_parts_of_our_own_motion_file_are_compared(analysis: Analysis, tmp_path: Path) -> None:
     (walk,) = [one for one in analysis.recordings if one.name == "walk 2"]
     n = len(walk.time_s)
     holes = {

@@ -1,14 +1,17 @@
-"""Two simulated visits that the report's tests share: a short one, and a prosthesis user's three alignments."""
+"""Simulated visits that the report's tests share: a short one, a prosthesis user's three alignments, one with hips."""
 
 from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 
 import pytest
 
+from app.reports.patient.document import make_report
+from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Side
 from core.session import RecordingKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
+from tests.app.hip_visits import hip_facts
 from tests.simulated import analysis_of, session_of
 
 MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=timezone(timedelta(hours=1)))
@@ -46,16 +49,27 @@ def alignments() -> AnalysedVisit:
     return AnalysedVisit(session, analysis_of(session))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
+def hips() -> Facts:
+    """Of a visit with a sensor on the pelvis."""
+    return hip_facts()
+
+
+@pytest.fixture(scope="session")
 def demo(demonstration: AnalysedVisit) -> ReportRequest:
     return ReportRequest(demonstration, ("walk 1",), MADE_AT, "1.2.3")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
+def demo_report(demo: ReportRequest) -> bytes:
+    return make_report(demo)
+
+
+@pytest.fixture(scope="session")
 def request_of_one_leg(one_leg: AnalysedVisit) -> ReportRequest:
     return ReportRequest(one_leg, ("walk 1",), MADE_AT, "1.2.3")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def aligned(alignments: AnalysedVisit) -> ReportRequest:
     return ReportRequest(alignments, ("walk 1", "walk 2", "walk 3"), MADE_AT, "1.2.3")

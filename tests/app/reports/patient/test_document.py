@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -15,6 +15,7 @@ from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import ReportPreview, make_report
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
+from core.session import Recording
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -23,15 +24,14 @@ def texts(pdf: bytes) -> list[str]:
     return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
 
 
-def first_page(request: ReportRequest) -> str:
-    """The words of page one, as they are read: in lines of one space, without marks of direction."""
-    return re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(request))[0].split()))
-
-
-def method_page(request: ReportRequest) -> str:
-    """The same of the page that states what was measured and how."""
-    page = next(page for page in texts(make_report(request)) if "Method and accuracy" in page)
+def words(page: str) -> str:
+    """As they are read: in lines of one space, without marks of direction."""
     return re.sub("[\u2066-\u2069]", "", " ".join(page.split()))
+
+
+def method_page(pages: list[str]) -> str:
+    """The words of the page that states what was measured and how."""
+    return words(next(page for page in pages if "Method and accuracy" in page))
 
 
 def elements(node: pikepdf.Object) -> Iterator[pikepdf.Object]:
@@ -46,9 +46,19 @@ def elements(node: pikepdf.Object) -> Iterator[pikepdf.Object]:
 
 
 @pytest.fixture(scope="module")
-def report(alignments: AnalysedVisit) -> bytes:
-    made_at = datetime.fromisoformat("2026-11-21T22:15:30+01:00")
-    return make_report(ReportRequest(alignments, default_walks(alignments), made_at, "1.2.3"))
+def report(aligned: ReportRequest) -> bytes:
+    assert aligned.walks == default_walks(aligned.visit)
+    return make_report(aligned)
+
+
+@pytest.fixture(scope="module")
+def pages(report: bytes) -> list[str]:
+    return texts(report)
+
+
+@pytest.fixture(scope="module")
+def two_visits(aligned: ReportRequest, alignments: AnalysedVisit) -> list[str]:
+    return texts(make_report(replace(aligned, earlier=alignments)))
 
 
 def test_it_is_tagged_titled_and_shows_its_language(report: bytes) -> None:
@@ -95,10 +105,9 @@ def test_every_font_is_embedded(report: bytes) -> None:
             assert "Inter" in str(font.FontName)
 
 
-def test_the_same_request_gives_the_same_bytes(demo: ReportRequest) -> None:
-    first = make_report(demo)
-    assert first == make_report(demo)
-    assert str(Path(__file__).parents[4]).encode() not in first
+def test_the_same_request_gives_the_same_bytes(demo: ReportRequest, demo_report: bytes) -> None:
+    assert demo_report == make_report(demo)
+    assert str(Path(__file__).parents[4]).encode() not in demo_report
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
@@ -124,7 +133,7 @@ def test_page_one_stays_one_page(
     assert pages[:2] == [0, 1]  # the summary; then all curves
 
 
-def test_the_pages_stand_in_their_order(report: bytes) -> None:
+def test_the_pages_stand_in_their_order(pages: list[str]) -> None:
     headings = (
         "Summary",
         "All curves and peaks",
@@ -132,7 +141,6 @@ def test_the_pages_stand_in_their_order(report: bytes) -> None:
         "Data quality",
         "Comparison of conditions",
     )
-    pages = texts(report)
     assert len(pages) == len(headings)
     for page, heading in zip(pages, headings, strict=True):
         assert heading in page
@@ -141,13 +149,13 @@ def test_the_pages_stand_in_their_order(report: bytes) -> None:
         assert "Gaitwright 1.2.3" in page
 
 
-def test_one_walk_takes_four_pages(demo: ReportRequest) -> None:
-    assert len(texts(make_report(demo))) == 4
+def test_one_walk_takes_four_pages(demo_report: bytes) -> None:
+    assert len(texts(demo_report)) == 4
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
 def test_the_comment_is_on_page_one_and_the_signature_on_the_page_of_the_method(
-    demo: ReportRequest, paper: str
+    demo: ReportRequest, demo_report: bytes, paper: str
 ) -> None:
     commented = replace(demo, paper=paper, comment="Walk again in May.", comment_by="M. Weber")
     pages = texts(make_report(commented))
@@ -155,19 +163,21 @@ def test_the_comment_is_on_page_one_and_the_signature_on_the_page_of_the_method(
     assert "M. Weber" in pages[0]
     assert "Signature" in pages[3]
     assert sum("Clinical comment" in page for page in pages) == 1
-    assert not any("Clinical comment" in page for page in texts(make_report(demo)))
+    assert not any("Clinical comment" in page for page in texts(demo_report))
 
 
 @pytest.mark.parametrize("paper", ["a4", "letter"])
-def test_nothing_of_a_page_is_left_for_the_next(aligned: ReportRequest, demo: ReportRequest, paper: str) -> None:
+def test_nothing_of_a_page_is_left_for_the_next(
+    aligned: ReportRequest, pages: list[str], demo: ReportRequest, paper: str
+) -> None:
     """Every page holds its heading and all that belongs to it: conditions or visits compared, peaks with windows."""
     before = walked_under(aligned.visit, demo)
-    two_visits = replace(demo, earlier=before, paper=paper)
-    for required in (replace(aligned, paper=paper), two_visits):
-        pages = texts(make_report(required))
-        assert len(pages) == 5
-        assert "Where values are measured" in pages[1]
-        assert "the first curve is thin and pale" in " ".join(pages[4].split())
+    visits = texts(make_report(replace(demo, earlier=before, paper=paper)))
+    conditions = pages if paper == aligned.paper else texts(make_report(replace(aligned, paper=paper)))
+    for found in (conditions, visits):
+        assert len(found) == 5
+        assert "Where values are measured" in found[1]
+        assert "the first curve is thin and pale" in words(found[4])
 
 
 @pytest.mark.usefixtures("pseudo_language")
@@ -176,53 +186,52 @@ def test_what_explains_the_peaks_takes_no_page_of_its_own(demo: ReportRequest) -
     assert len(texts(make_report(demo))) == 4
 
 
-def test_a_walk_is_called_as_on_the_screen(aligned: ReportRequest) -> None:
-    assert "walk: C alignment C" in method_page(aligned)
-    assert "alignment C" in first_page(aligned)
-    two = replace(aligned, walks=("walk 2", "walk 3"))
-    assert "Compared: B alignment B · C alignment C (shown: C)" in method_page(two)
-    visit = aligned.visit
-    reported = visit.session.recordings
-    alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in reported)
-    same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
-    first = method_page(replace(two, visit=same))
-    assert "walk: A3 shoes" in first
-    assert "Compared: A2 shoes · A3 shoes (shown: A3)" in first
-    unnamed = tuple(replace(one, condition="") for one in reported)
-    bare = AnalysedVisit(replace(visit.session, recordings=unnamed), visit.analysis)
-    assert "walk: walk 3" in method_page(replace(two, visit=bare, walks=("walk 3",)))
+def test_a_walk_is_called_as_on_the_screen(aligned: ReportRequest, pages: list[str]) -> None:
+    def method(*walks: str, conditions: Callable[[Recording], str]) -> str:
+        visit = aligned.visit
+        recordings = tuple(replace(one, condition=conditions(one)) for one in visit.session.recordings)
+        named = AnalysedVisit(replace(visit.session, recordings=recordings), visit.analysis)
+        return method_page(texts(make_report(replace(aligned, walks=walks, visit=named))))
+
+    assert "walk: C alignment C" in method_page(pages)
+    assert "alignment C" in words(pages[0])
+    two = method("walk 2", "walk 3", conditions=lambda one: one.condition)
+    assert "Compared: B alignment B · C alignment C (shown: C)" in two
+    alike = method("walk 2", "walk 3", conditions=lambda one: "shoes" if one.name.startswith("walk") else "")
+    assert "walk: A3 shoes" in alike
+    assert "Compared: A2 shoes · A3 shoes (shown: A3)" in alike
+    assert "walk: walk 3" in method("walk 3", conditions=lambda _: "")
 
 
 def test_page_one_states_what_differs_and_the_page_of_the_method_what_was_measured(
-    aligned: ReportRequest, request_of_one_leg: ReportRequest
+    pages: list[str], request_of_one_leg: ReportRequest
 ) -> None:
-    method = method_page(aligned)
+    method = method_page(pages)
     assert "Knee and ankle of both legs · 6 motion sensors" in method
     assert "Compared: A alignment A · B alignment B · C alignment C (shown: C)" in method
-    first = first_page(aligned)
+    first = words(pages[0])
     assert "Right ankle plantarflexes 9° at push-off, 17° less than the left." in first
     assert "95 of 100 healthy people differ by less." in first
     assert "prosthetic side: right · alignment C" in first
-    first = first_page(request_of_one_leg)
+    one_leg = texts(make_report(request_of_one_leg))
+    first = words(one_leg[0])
     assert "Left knee flexes 61° from stance to swing." in first
     assert "Stance symmetry" not in first
     assert "R − L" not in first
     assert not re.search(r"\b(right|Right|differ)\b", first)
-    assert "Knee and ankle of the left leg · 3 motion sensors" in method_page(request_of_one_leg)
+    assert "Knee and ankle of the left leg · 3 motion sensors" in method_page(one_leg)
 
 
-def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
-    aligned: ReportRequest, alignments: AnalysedVisit
-) -> None:
-    page = texts(make_report(replace(aligned, earlier=alignments)))[4]
+def test_two_visits_are_compared_by_the_error_of_a_new_attachment(two_visits: list[str]) -> None:
+    page = words(two_visits[4])
     assert "Comparison of visits" in page
     assert "Two visits, sensors reattached" in page
     # 1.96 x sqrt(2) x hypot(1.2, 0.043 x 60)
-    assert "Differences between walks alone account for 7.9° of knee range of motion" in " ".join(page.split())
+    assert "Differences between walks alone account for 7.9° of knee range of motion" in page
 
 
 def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
-    aligned: ReportRequest, alignments: AnalysedVisit
+    aligned: ReportRequest, alignments: AnalysedVisit, two_visits: list[str]
 ) -> None:
     """C of this visit is reported against C of the earlier one; where that has only A, against nothing."""
     recordings = alignments.session.recordings[:-2]  # up to alignment A
@@ -239,7 +248,7 @@ def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
     same = comparison_of(replace(request, earlier=alignments))
     assert same is not None
     assert [[walk.name for walk in part.walks] for part in same.parts] == [["walk 3"], ["walk 3"]]
-    assert not any("so it is not compared" in page for page in texts(make_report(replace(request, earlier=alignments))))
+    assert not any("so it is not compared" in page for page in two_visits)
 
 
 def walked_under(visit: AnalysedVisit, request: ReportRequest) -> AnalysedVisit:
@@ -280,7 +289,9 @@ def test_a_look_again_is_as_if_it_were_the_first(alignments: AnalysedVisit) -> N
         before = pages
 
 
-def test_the_page_of_conditions_states_what_was_turned_and_against_which(aligned: ReportRequest) -> None:
+def test_the_page_of_conditions_states_what_was_turned_and_against_which(
+    aligned: ReportRequest, pages: list[str]
+) -> None:
     visit = aligned.visit
     changes = {
         "walk 2": AlignmentChange("alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.5),)),
@@ -288,10 +299,7 @@ def test_the_page_of_conditions_states_what_was_turned_and_against_which(aligned
     }
     turned = tuple(replace(one, alignment=changes.get(one.name)) for one in visit.session.recordings)
     reported = replace(aligned, visit=AnalysedVisit(replace(visit.session, recordings=turned), visit.analysis))
-    without, page = (
-        re.sub("[\u2066-\u2069]", "", " ".join(" ".join(texts(make_report(one))[-2:]).split()))
-        for one in (aligned, reported)
-    )
+    without, page = (words(" ".join(one[-2:])) for one in (pages, texts(make_report(reported))))
     assert "Foot, anterior screw ½ turn out" in page
     assert "Pylon +3 mm" in page
     assert "Jonkergouw" in page

@@ -15,7 +15,7 @@ from app.reports.patient.document import make_report
 from app.summary.request import AnalysedVisit, ReportRequest
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def report(demo: ReportRequest) -> bytes:
     """The report of one walk of somebody else than the fixtures' patient."""
     visit = demo.visit

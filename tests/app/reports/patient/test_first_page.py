@@ -8,6 +8,7 @@ from typing import Any
 from uuid import UUID
 
 import pypdf
+from syrupy.assertion import SnapshotAssertion
 
 from app.reports.patient.document import facts_of, make_report, report_data
 from app.reports.patient.first_page import first_page
@@ -94,16 +95,10 @@ def test_page_one_has_what_changed_over_the_course_also_without_its_own_page(dem
     assert with_page["first_page"] == without["first_page"]
 
 
-def test_the_amber_box_comes_only_where_something_is_not_good(demo: ReportRequest) -> None:
-    good, doubtful = (
-        page(demo),
-        page(changed(demo, axis_sd_rad=math.radians(9.8))),
-    )
-    assert good["caution"] is None
-    assert good["quality"][0] == "Data quality: good."
-    assert doubtful["caution"]["first"] == "Left knee: not reported."
-    assert "±9.8°" in doubtful["caution"]["then"]
-    assert doubtful["quality"][0] == "Data quality: caution."
+def test_the_amber_box_comes_only_where_something_is_not_good(demo: ReportRequest, snapshot: SnapshotAssertion) -> None:
+    pages = {"good": page(demo), "doubtful": page(changed(demo, axis_sd_rad=math.radians(9.8)))}
+    assert pages["good"]["caution"] is None
+    assert {name: (one["caution"], one["quality"]) for name, one in pages.items()} == snapshot
 
 
 def test_a_knee_that_is_not_reported_has_no_figure_and_a_box_in_place_of_its_curve(demo: ReportRequest) -> None:
@@ -152,31 +147,26 @@ def test_a_comment_is_beside_the_summary_with_who_wrote_it_and_a_long_one_states
     assert page(replace(commented, comment="Walks well today. " * 40))["comment"]["rest"]
 
 
-def test_who_was_measured_and_how_is_beside_the_code(demo: ReportRequest) -> None:
+def test_who_was_measured_and_how_is_beside_the_code(demo: ReportRequest, snapshot: SnapshotAssertion) -> None:
+    """A stated prosthesis takes the place of its side."""
     session = demo.visit.session
-    patient = Patient(code="P-1", birth_year=1961, sex="female", affected_side="left", device="left knee replaced")
-    recordings = tuple(replace(one, condition="shoes") for one in session.recordings)
-    known = replace(session, patient=patient, recordings=recordings)
-    visit = AnalysedVisit(known, demo.visit.analysis)
-    stated = page(replace(demo, visit=visit))["who"]
-    assert plain(stated) == "Woman · born 1961 · affected side: left · left knee replaced · shoes"
-
-
-def test_a_stated_prosthesis_takes_the_place_of_its_side_beside_the_code(demo: ReportRequest) -> None:
-    session = demo.visit.session
-    transtibial = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
+    shoes = tuple(replace(one, condition="shoes") for one in session.recordings)
+    transtibial = {Side.LEFT: Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)}
     alone = Patient(code="P-1", prosthetic_side="left", device="own socket")
-    for patient, words in (
-        (alone, "prosthetic side: left"),
-        (replace(alone, prostheses={Side.LEFT: transtibial}), "Transtibial prosthesis left, energy-storing foot"),
-        (
-            replace(alone, prosthetic_side="both", prostheses={Side.LEFT: transtibial}),
-            "Transtibial prosthesis left, energy-storing foot · Prosthesis right",
+    known = {
+        "no prosthesis": replace(
+            session,
+            patient=Patient("P-1", birth_year=1961, sex="female", affected_side="left", device="left knee replaced"),
+            recordings=shoes,
         ),
-    ):
-        visit = AnalysedVisit(replace(session, patient=patient), demo.visit.analysis)
-        stated = page(replace(demo, visit=visit))["who"]
-        assert plain(stated).startswith(f"{words} · own socket")
+        "a prosthetic side": replace(session, patient=alone),
+        "a stated prosthesis": replace(session, patient=replace(alone, prostheses=transtibial)),
+        "two sides, one of them stated": replace(
+            session, patient=replace(alone, prosthetic_side="both", prostheses=transtibial)
+        ),
+    }
+    requests = {name: replace(demo, visit=AnalysedVisit(one, demo.visit.analysis)) for name, one in known.items()}
+    assert {name: plain(page(request)["who"]) for name, request in requests.items()} == snapshot
 
 
 def test_no_letter_of_page_one_is_smaller_than_nine_points(demo: ReportRequest) -> None:

@@ -3,9 +3,11 @@
 import io
 import math
 from dataclasses import replace
+from typing import Any
 
 import pypdf
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.reports.blocks import Block
 from app.reports.patient.curves_page import curves_page
@@ -24,9 +26,8 @@ from core.body import Joint, JointKind, Side
 from core.gait.clocks import ClockTie
 from core.hip.results import ClockStatus, LegClock
 from core.results import Analysis, RecordingAnalysis
-from core.verdicts.model import Verdict
 from tests.app.changed_analysis import walk_of
-from tests.app.hip_visits import hip_analysis, hip_facts, hip_request
+from tests.app.hip_visits import hip_analysis, hip_request
 from tests.core.hip.hip_sessions import rewalked, with_hip
 
 BOTH = (Joint.LEFT_HIP, Joint.RIGHT_HIP)
@@ -53,17 +54,28 @@ def rows(blocks: list[Block]) -> dict[str, list[str]]:
     return found
 
 
-def with_clock(offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie = ClockTie.PELVIS) -> Analysis:
+def of(hips: Facts, analysis: Analysis) -> Facts:
+    """The same visit with another analysis."""
+    return Facts(replace(hips.visit, analysis=analysis), walk_of(analysis))
+
+
+def with_joints(hips: Facts, *joints: Joint, **change: Any) -> Facts:
+    return of(hips, with_hip(hips.visit.analysis, *joints, **change))
+
+
+def with_clock(
+    hips: Facts, offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie = ClockTie.PELVIS
+) -> Facts:
     def changed(walk: RecordingAnalysis) -> RecordingAnalysis:
         assert walk.clocks is not None
         return replace(walk, clocks=replace(walk.clocks, tie=tie), leg_clock=LegClock(offset_s, sd_s, status))
 
-    return rewalked(hip_analysis(), changed)
+    return of(hips, rewalked(hips.visit.analysis, changed))
 
 
 @pytest.mark.endurance
-def test_six_joints_are_counted_and_the_late_clock_is_reported() -> None:
-    found = data_quality(hip_facts())
+def test_six_joints_are_counted_and_the_late_clock_is_reported(hips: Facts) -> None:
+    found = data_quality(hips)
     assert found.first == "All six joints are reported."
     assert (
         "left and right sensors synchronised from hip movement: the right leg was 40 ms late, ± 5 ms" in found.in_order
@@ -71,71 +83,35 @@ def test_six_joints_are_counted_and_the_late_clock_is_reported() -> None:
     assert found.lines == ()
 
 
-def test_a_not_reported_hip_is_reported_once_with_what_to_do() -> None:
-    found = data_quality(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2, is_3d=False)))
-    assert found.first == "5 of 6 joints: Good. Not reported: left hip."
-    (line,) = found.lines  # its abduction goes with it
-    assert line.where == "Left hip"
-    assert line.verdict is Verdict.NOT_REPORTED
+def test_what_of_a_hip_is_not_reported_is_stated_once_with_what_to_do(hips: Facts, snapshot: SnapshotAssertion) -> None:
+    """Its abduction goes with it; abduction alone leaves the joints to be read."""
+    gated = data_quality(with_joints(hips, Joint.LEFT_HIP, margin=1.2, is_3d=False))
+    abduction = with_joints(hips, *BOTH, heading_sd_rad=math.radians(7.0), is_3d=False)
+    assert {
+        "a hip": [gated.first, *((line.where, line.verdict.value) for line in gated.lines)],
+        "abduction": [data_quality(abduction).first, *caveats(abduction)],
+    } == snapshot
 
 
-def test_not_reported_abduction_leaves_the_joints_to_be_read() -> None:
-    facts = hip_facts(with_hip(hip_analysis(), *BOTH, heading_sd_rad=math.radians(7.0), is_3d=False))
-    found = data_quality(facts)
-    assert found.first == "All six joints are reported."
-    (line,) = caveats(facts)
-    assert line.startswith("Abduction of ")
-    assert "The direction of the thigh relative to the pelvis is too uncertain (7.0°, limit 6.0°)" in line
+def test_how_the_legs_have_one_time_is_stated(hips: Facts, snapshot: SnapshotAssertion) -> None:
+    """In the line of data quality, and on page four."""
+    cases = {
+        "right late": (0.04, 0.005, ClockStatus.FOUND),
+        "left late": (-0.04, 0.002, ClockStatus.FOUND),
+        "right late by less than its error": (0.004, 0.005, ClockStatus.FOUND),
+        "left late by less than its error": (-0.004, 0.005, ClockStatus.FOUND),
+        "confirmed": (0.001, 0.005, ClockStatus.PROVEN),
+        "not found": (math.nan, math.nan, ClockStatus.NOT_REPORTED),
+    }
+    found = {name: with_clock(hips, *case) for name, case in cases.items()}
+    tied = {name: found[name] for name in ("right late", "left late", "right late by less than its error")}
+    tied["one clock"] = with_clock(hips, 0.001, 0.005, ClockStatus.PROVEN, ClockTie.ONE_CLOCK)
+    assert {name: one_time_in_words(one.walk) for name, one in tied.items()} == snapshot
+    assert {name: clocks_in_words(one) for name, one in found.items()} == snapshot
 
 
-@pytest.mark.parametrize(
-    ("offset_s", "sd_s", "status", "tie", "required"),
-    [
-        (0.04, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "from hip movement: the right leg was 40 ms late, ± 5 ms"),
-        (-0.04, 0.002, ClockStatus.FOUND, ClockTie.PELVIS, "from hip movement: the left leg was 40 ms late, ± 2 ms"),
-        (0.004, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "synchronised from hip movement to ± 5 ms"),
-        (0.001, 0.005, ClockStatus.PROVEN, ClockTie.ONE_CLOCK, "left and right sensors synchronised"),
-    ],
-)
-def test_how_the_legs_have_one_time_is_stated(
-    offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie, required: str
-) -> None:
-    found = one_time_in_words(hip_facts(with_clock(offset_s, sd_s, status, tie)).walk)
-    assert found.endswith(required)
-
-
-@pytest.mark.parametrize(
-    ("offset_s", "sd_s", "status", "required"),
-    [
-        (
-            0.04,
-            0.005,
-            ClockStatus.FOUND,
-            "time offset found from hip movement. The right leg was 40 ± 5 ms late (1 SD). This was corrected.",
-        ),
-        (
-            -0.004,
-            0.005,
-            ClockStatus.FOUND,
-            "time offset found from hip movement. The left leg was 4 ± 5 ms late (1 SD).",
-        ),
-        (0.001, 0.005, ClockStatus.PROVEN, "synchronisation confirmed."),
-        (
-            math.nan,
-            math.nan,
-            ClockStatus.NOT_REPORTED,
-            "their time offset cannot be found from hip movement.",
-        ),
-    ],
-)
-def test_page_four_states_how_both_clocks_are_tied(
-    offset_s: float, sd_s: float, status: ClockStatus, required: str
-) -> None:
-    assert clocks_in_words(hip_facts(with_clock(offset_s, sd_s, status))) == f"Left and right sensors: {required}"
-
-
-def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_reported() -> None:
-    table = rows(hips_table(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.21))))
+def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_reported(hips: Facts) -> None:
+    table = rows(hips_table(with_joints(hips, Joint.LEFT_HIP, margin=1.21)))
     assert table["Adjacent segments, clarity"][0] == "1.21"
     assert table["Adjacent segments, clarity"][2] == "at least 1.5"
     assert table["ROM, shape"][:2] == ["Not reported", "Good"]
@@ -143,19 +119,18 @@ def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_repor
     assert table["Pelvis–thigh heading, ± 1 SD"][2] == "at most 6°, for abduction only"
 
 
-def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:
-    facts = hip_facts()
-    table = rows(peaks_table(facts))
+def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable(hips: Facts) -> None:
+    table = rows(peaks_table(hips))
     left, right, difference, likely, *_ = table["Abduction range of motion"]
     assert left.endswith(tuple("0123456789"))
     assert right != left
     assert (difference[0] in "+−", likely) == (True, "–")
     assert (
         "For hips and pelvis the measurement error of a difference is not known: differences are given but not judged"
-    ) in stated(peaks_table(facts))
+    ) in stated(peaks_table(hips))
 
 
-def test_no_sentence_shows_how_hips_or_pelvis_differ_however_much() -> None:
+def test_no_sentence_shows_how_hips_or_pelvis_differ_however_much(hips: Facts) -> None:
     def stiffened(walk: RecordingAnalysis) -> RecordingAnalysis:
         left = walk.gait[Side.LEFT]
         halved = {
@@ -164,15 +139,15 @@ def test_no_sentence_shows_how_hips_or_pelvis_differ_however_much() -> None:
         }
         return replace(walk, gait={**walk.gait, Side.LEFT: replace(left, parameters=halved)})
 
-    facts = hip_facts(rewalked(hip_analysis(), stiffened))
+    facts = of(hips, rewalked(hips.visit.analysis, stiffened))
     assert rows(peaks_table(facts))["Abduction range of motion"][3] == "–"
     words = f"{headline_of(facts).first} {headline_of(facts).then}".casefold()
     assert words
     assert not [word for word in ("hip", "pelvis") if word in words]
 
 
-def test_the_pelvis_has_its_table_and_the_tilt_its_reason() -> None:
-    blocks = pelvis_table(hip_facts())
+def test_the_pelvis_has_its_table_and_the_tilt_its_reason(hips: Facts) -> None:
+    blocks = pelvis_table(hips)
     table = rows(blocks)
     assert set(table) == {"Obliquity, range", "Drop in swing", "Rotation, range", "Mean tilt, forward +", "Tilt, range"}
     assert table["Tilt, range"] == ["not reported", "not reported"]
@@ -188,23 +163,25 @@ def test_without_a_pelvis_nothing_of_it_is_printed(demo: ReportRequest) -> None:
     assert "hip" not in stated(first_page(demo, facts, None)).casefold()
 
 
-def test_hips_are_a_row_on_page_one_and_curves_on_page_two_and_a_not_reported_one_states_why() -> None:
-    table = first_page(hip_request(hip_analysis()), hip_facts(), None)["table"]
+def test_hips_are_a_row_on_page_one_and_curves_on_page_two_and_a_not_reported_one_states_why(
+    hips: Facts,
+) -> None:
+    table = first_page(hip_request(hips.visit.analysis), hips, None)["table"]
     assert isinstance(table, dict)
     assert [row["name"] for row in table["rows"]].count("Hip range of motion") == 1
-    gated = with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2)
-    page = first_page(hip_request(gated), hip_facts(gated), None)
+    gated = with_joints(hips, Joint.LEFT_HIP, margin=1.2)
+    page = first_page(hip_request(gated.visit.analysis), gated, None)
     assert "not reported" in stated(page["caution"])
-    (figures,) = (block for block in curves_page(hip_facts()) if block["kind"] == "figures")
+    (figures,) = (block for block in curves_page(hips) if block["kind"] == "figures")
     pictures = figures["pictures"]
     assert isinstance(pictures, list)
     assert len(pictures) == 3
 
 
-def test_page_two_has_no_band_at_the_hip() -> None:
-    blocks = curves_page(hip_facts())
+def test_page_two_has_no_band_at_the_hip(hips: Facts) -> None:
+    blocks = curves_page(hips)
     assert "At the hip, the reference has another zero and is not shown." in stated(blocks)
-    assert hip_facts().has_joint(JointKind.HIP)
+    assert hips.has_joint(JointKind.HIP)
 
 
 @pytest.mark.endurance

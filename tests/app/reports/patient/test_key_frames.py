@@ -52,11 +52,10 @@ def test_each_picture_is_in_the_report_as_it_was_taken_and_described(demo: Repor
     assert pdf == make_report(replace(demo, key_frames=shown))
 
 
-def test_without_being_asked_for_there_is_none(demo: ReportRequest) -> None:
-    pdf = make_report(demo)
-    assert pictures_in(pdf) == []
-    assert "Key frames" not in words(pdf)
-    assert "Faces" not in words(pdf)
+def test_without_being_asked_for_there_is_none(demo_report: bytes) -> None:
+    assert pictures_in(demo_report) == []
+    assert "Key frames" not in words(demo_report)
+    assert "Faces" not in words(demo_report)
 
 
 def test_one_leg_has_one_row_and_an_angle_that_is_not_reported_has_no_figure() -> None:
@@ -71,13 +70,11 @@ def test_one_leg_has_one_row_and_an_angle_that_is_not_reported_has_no_figure() -
 
 
 @pytest.mark.endurance
-def test_the_pages_are_the_same_length_with_pictures_of_any_shape(demo: ReportRequest) -> None:
+def test_the_pages_are_the_same_length_with_pictures_of_any_shape(demo: ReportRequest, demo_report: bytes) -> None:
     """An upright clip: eight high pictures take a page and no more."""
     upright = tuple(replace(one, width=180, height=320) for one in frames(*Side))
-    plain, with_them = (
-        len(pypdf.PdfReader(io.BytesIO(make_report(request))).pages)
-        for request in (demo, replace(demo, key_frames=upright))
-    )
+    reports = (demo_report, make_report(replace(demo, key_frames=upright)))
+    plain, with_them = (len(pypdf.PdfReader(io.BytesIO(one)).pages) for one in reports)
     assert with_them == plain + 1
 
 

@@ -21,10 +21,18 @@ from tests.core.verdicts.built_walk import with_gaps
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 
-def shown(request: ReportRequest) -> list[str]:
+def pages_of(pdf: bytes) -> list[str]:
     """Give the text of every page, in lines of one space."""
-    pages = pypdf.PdfReader(io.BytesIO(make_report(request))).pages
-    return [" ".join(page.extract_text().split()) for page in pages]
+    return [" ".join(page.extract_text().split()) for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
+
+
+def shown(request: ReportRequest) -> list[str]:
+    return pages_of(make_report(request))
+
+
+@pytest.fixture(scope="module")
+def usual(demo_report: bytes) -> list[str]:
+    return pages_of(demo_report)
 
 
 def with_analysis(request: ReportRequest, analysis: Analysis) -> ReportRequest:
@@ -182,8 +190,7 @@ def test_an_uncertain_sign_leaves_the_range_alone(demo: ReportRequest) -> None:
     assert re.search(r"Range of motion 61\.7 ± 0\.8 63\.0", pages[1])
 
 
-def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(demo: ReportRequest) -> None:
-    usual = shown(demo)
+def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(demo: ReportRequest, usual: list[str]) -> None:
     request = with_joints(demo, Joint.RIGHT_ANKLE, is_same_joint=False, sign_margin=1.05)
     pages = shown(request)
     assert len(pages) == len(usual)
@@ -246,9 +253,9 @@ def test_gaps_and_slips_are_stated(demo: ReportRequest) -> None:
     assert re.search(r"\d+ more on page 4\.", pages[0])
 
 
-def test_clocks_that_cannot_be_compared_are_stated(demo: ReportRequest) -> None:
+def test_clocks_that_cannot_be_compared_are_stated(demo: ReportRequest, usual: list[str]) -> None:
     request = with_joints(demo, lag_sd_s=None, is_clock_shared=False)
-    pages, usual = shown(request), shown(demo)
+    pages = shown(request)
     assert len(pages) == len(usual)
     assert readable(request)["Left knee"][:2] == [NOT_REPORTED, NOT_REPORTED]
     assert "All joints: not reported. The two sensors could not be synchronised from the movement." in pages[0]

@@ -3,7 +3,6 @@
 Reported from the files alone, as a reader of them would.
 """
 
-import csv
 import json
 import math
 import re
@@ -28,6 +27,7 @@ from app.summary.request import AnalysedVisit, ReportRequest
 from app.wording.numbers import MINUS
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
+from tests.app.exports.written_tables import csv_rows
 
 DIGITS = 1e-5
 # 1.96 sqrt(2) times 1.0 deg, hypot(1.2, 2.58), 3.3, 0.55 and 1.1 points; healthy ankles; and "over 100"
@@ -42,14 +42,9 @@ def results(demonstration: AnalysedVisit, tmp_path_factory: pytest.TempPathFacto
     return folder
 
 
-def table(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def of_used(path: Path, side: Side) -> list[dict[str, str]]:
     """Give the rows of strides.csv or peaks.csv that count for a side."""
-    return [row for row in table(path) if row["side"] == side and row["used"] == "true"]
+    return [row for row in csv_rows(path) if row["side"] == side and row["used"] == "true"]
 
 
 def column(rows: list[dict[str, str]], name: str) -> list[float]:
@@ -69,13 +64,13 @@ def known(results: Path, walk: str = "walk_1") -> set[str]:
                 if len(numbers) > 1:
                     values += [fmean(numbers), stdev(numbers), 100 * stdev(numbers) / fmean(numbers)]
         values += in_parts(strides)
-    cycles = table(results / walk / "cycles.csv")
+    cycles = csv_rows(results / walk / "cycles.csv")
     values += [fmean(float(row[name]) for row in cycles) for name in cycles[0] if name.endswith("_sd_deg")]
     if (results / "differences.csv").exists():
-        differences = table(results / "differences.csv")
+        differences = csv_rows(results / "differences.csv")
         names = ("mean", "sd", "against_mean", "against_sd", "difference", "error", "low", "high", "healthy_limit")
         values += [number for name in names for number in column(differences, name)]
-    for line in table(results / "sides.csv") if (results / "sides.csv").exists() else []:
+    for line in csv_rows(results / "sides.csv") if (results / "sides.csv").exists() else []:
         values += [float(line[name]) for name in ("difference", "error", "low", "high", "healthy_limit") if line[name]]
     summary = json.loads((results / "summary.json").read_text())
     values += [*numbers_in(summary["walks"]), *numbers_in(summary["joints"]), *ERRORS]
@@ -162,7 +157,7 @@ def test_every_number_of_one_leg_alone_is_in_a_file(request_of_one_leg: ReportRe
 def test_every_curve_is_in_a_file(demo: ReportRequest, results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Means are of cycles.csv, single strides of angles.csv between the times of strides.csv."""
     charts = drawn(demo, monkeypatch)
-    cycles, angles = table(results / "walk_1" / "cycles.csv"), table(results / "walk_1" / "angles.csv")
+    cycles, angles = csv_rows(results / "walk_1" / "cycles.csv"), csv_rows(results / "walk_1" / "angles.csv")
     assert len(charts) == 2 * len(first_page.CHART_HEIGHTS) + 2 + 4
     for chart in charts:
         kind = "knee" if "nee" in chart.title else "ankle"
@@ -205,7 +200,7 @@ def test_every_number_and_curve_of_a_comparison_is_in_a_file(
     numbers, files = numbers_of(report_data(aligned)), known(tmp_path, "walk_3")
     assert len(numbers) > 200
     assert [(where, number) for where, number in numbers if number not in files] == []
-    cycles = table(tmp_path / "compared_cycles.csv")
+    cycles = csv_rows(tmp_path / "compared_cycles.csv")
     compared = [chart for chart in drawn(aligned, monkeypatch) if len(chart.curves) == 3]
     assert len(compared) == 4
     for chart in compared:

@@ -12,6 +12,7 @@ import pypdf
 import pytest
 import typst
 
+from app.cli import report
 from app.cli.main import main
 from app.exports.result_folder import session_of
 from app.reports.patient.document import make_report
@@ -19,6 +20,7 @@ from app.reports.patient.report_file import check_report_place, chosen_walks, re
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
+from tests.simulated import analysis_of
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +30,13 @@ def session(demonstration: AnalysedVisit, tmp_path_factory: pytest.TempPathFacto
     return folder
 
 
+@pytest.fixture
+def stored(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The subcommand finds the analysis of the session as other tests do."""
+    monkeypatch.setattr(report, "analyse", lambda session, **_: analysis_of(session))
+
+
+@pytest.mark.usefixtures("stored")
 def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, tmp_path: Path) -> None:
     (tmp_path / "words.txt").write_text("Walks well with one crutch.", encoding="utf-8")
     out = tmp_path / "new" / "report.pdf"
@@ -41,17 +50,18 @@ def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, 
     assert (book["About"].page_setup.paperSize, "Summary" in book.sheetnames) == (1, True)
 
 
+@pytest.mark.usefixtures("stored")
 def test_the_workbook_has_the_name_of_the_report_and_replaces_only_a_workbook(
     session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """So that the reports of two people in one folder do not share their figures."""
-    report = ["report", str(session), "--out"]
-    assert main([*report, str(tmp_path / "anna.pdf")]) == 0
-    assert main([*report, str(tmp_path / "anna.pdf")]) == 0
+    command = ["report", str(session), "--out"]
+    assert main([*command, str(tmp_path / "anna.pdf")]) == 0
+    assert main([*command, str(tmp_path / "anna.pdf")]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["anna.pdf", "anna.xlsx"]
     assert f"{tmp_path / 'anna.xlsx'}: all figures of the session." in capsys.readouterr().out
     (tmp_path / "notes.xlsx").write_text("not a workbook")
-    assert main([*report, str(tmp_path / "notes.pdf")]) == 2
+    assert main([*command, str(tmp_path / "notes.pdf")]) == 2
     assert "notes.xlsx: this already exists and is not a workbook of Gaitwright" in capsys.readouterr().err
     assert (tmp_path / "notes.xlsx").read_text() == "not a workbook"
     assert not (tmp_path / "notes.pdf").exists()
@@ -97,16 +107,16 @@ def test_what_cannot_be_reported_is_refused_in_one_line(
 
 
 def test_only_a_report_is_replaced(tmp_path: Path) -> None:
-    letter, report = tmp_path / "letter.txt", tmp_path / "report.pdf"
+    letter, before = tmp_path / "letter.txt", tmp_path / "report.pdf"
     letter.write_text("Dear colleague")
-    replace_report(b"%PDF-1.7 old", report)
-    check_report_place(report)
+    replace_report(b"%PDF-1.7 old", before)
+    check_report_place(before)
     check_report_place(tmp_path / "none.pdf")
     for place in (letter, tmp_path):
         with pytest.raises(FileRefusedError):
             check_report_place(place)
-    replace_report(b"%PDF-1.7 new", report)
-    assert report.read_bytes() == b"%PDF-1.7 new"
+    replace_report(b"%PDF-1.7 new", before)
+    assert before.read_bytes() == b"%PDF-1.7 new"
 
 
 def test_results_lead_to_the_session_inside_them(session: Path, tmp_path: Path) -> None:
