@@ -16,6 +16,7 @@ import pytest
 
 from app.cli import agree, import_files, places
 from app.cli.main import main
+from app.cohort.batch import analysed_folder
 from core.body import Site
 from core.samples import ImuBlock
 from devices.files.formats import read_trial
@@ -23,7 +24,7 @@ from devices.files.references.reading import read_reference
 from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.benchmarks.long import repeated
-from tests.simulated import simulation_of
+from tests.simulated import analysis_of, simulation_of
 
 CASES = "cases"
 
@@ -261,6 +262,7 @@ def case(
             monkeypatch.setattr(module, name, read_here[name])
             patched.add(name)
     assert patched == read_here.keys()  # else some are read elsewhere now
+    monkeypatch.setattr(analysed_folder, "analyse", lambda session, *_: analysis_of(session))
     return Case(tmp_path / "out", capsys)
 
 

@@ -1,6 +1,5 @@
 """Tests that `compare` and `export` report what differs and write what was asked for, or refuse in one line."""
 
-import csv
 import re
 import shutil
 from dataclasses import replace
@@ -13,15 +12,16 @@ from app.cli.compare import FLAGS, _table
 from app.cli.main import main
 from app.summary.comparison import Contrast
 from app.summary.differences import Row, comparisons_of, rows_of, without_common_condition
-from core.analysis import analyse
 from core.body import Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
-from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.quantities import PARAMETERS
 from devices.files.session_folder import read_session, write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.app.changed_analysis import recalibrated
+from tests.app.exports.written_tables import csv_rows
+from tests.simulated import analysis_of, session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -29,17 +29,17 @@ Visit = tuple[Session, Analysis]
 CONDITIONS = {"walk 1": "barefoot", "walk 2": "AFO"}
 
 
-def session_of(seed: int, *walks: str) -> Session:
+def walked(seed: int, *walks: str) -> Session:
     required = tuple(Walk(name=name, strides=15) for name in walks)
-    session = simulate(WalkerSettings(seed=seed, recordings=(Standing(), FreeMotion(), *required))).session
+    session = session_of(WalkerSettings(seed=seed, recordings=(Standing(), FreeMotion(), *required)))
     recordings = tuple(replace(r, condition=CONDITIONS.get(r.name, "")) for r in session.recordings)
     return replace(session, recordings=recordings)
 
 
 @pytest.fixture(scope="module")
 def visits() -> list[Visit]:
-    sessions = session_of(5, "walk 1", "walk 2"), session_of(6, "walk 2")
-    return [(session, analyse(session)) for session in sessions]
+    sessions = walked(5, "walk 1", "walk 2"), walked(6, "walk 2")
+    return [(session, analysis_of(session)) for session in sessions]
 
 
 @pytest.fixture(scope="module")
@@ -112,14 +112,8 @@ def test_between_sessions_knees_are_judged_and_ankles_with_a_dagger(visits: list
 
 
 def test_heights_without_a_common_zero_are_not_compared(visits: list[Visit]) -> None:
-    def without_zero(analysis: Analysis) -> Analysis:
-        spans = tuple(
-            replace(span, joints={j: replace(found, zero=ZeroKind.NONE) for j, found in span.joints.items()})
-            for span in analysis.calibrations
-        )
-        return judged(replace(analysis, calibrations=spans))
-
-    found = rows([(visits[0][0], without_zero(visits[0][1]))])
+    (session, analysis) = visits[0]
+    found = rows([(session, recalibrated(analysis, zero=ZeroKind.NONE))])
     assert row(found, Side.LEFT, "knee_swing_peak_deg").difference.judgement == Judgement.NOT_REPORTED
     assert not row(found, Side.LEFT, "knee_swing_peak_deg").difference.is_reported
     assert row(found, Side.LEFT, "knee_range_deg").difference.judgement == Judgement.INSIDE_ERROR
@@ -127,15 +121,9 @@ def test_heights_without_a_common_zero_are_not_compared(visits: list[Visit]) -> 
 
 
 def test_heights_from_zeros_of_two_kinds_stand_apart_and_are_not_compared(visits: list[Visit]) -> None:
-    def from_goniometer(analysis: Analysis) -> Analysis:
-        spans = tuple(
-            replace(span, joints={j: replace(found, zero=ZeroKind.GONIOMETER) for j, found in span.joints.items()})
-            for span in analysis.calibrations
-        )
-        return judged(replace(analysis, calibrations=spans))
-
-    (first, second) = visits
-    found = [one for one in rows([first, (second[0], from_goniometer(second[1]))]) if one.part.letter == "2A"]
+    first, (session, analysis) = visits
+    by_goniometer = session, recalibrated(analysis, zero=ZeroKind.GONIOMETER)
+    found = [one for one in rows([first, by_goniometer]) if one.part.letter == "2A"]
     knee = row(found, Side.LEFT, "knee_swing_peak_deg")
     assert (knee.difference.judgement, knee.difference.is_reported) == (Judgement.NOT_REPORTED, False)
     assert row(found, Side.LEFT, "knee_range_deg").difference.is_reported
@@ -143,11 +131,7 @@ def test_heights_from_zeros_of_two_kinds_stand_apart_and_are_not_compared(visits
 
 def test_the_terminal_marks_errors_that_nobody_could_check_and_states_not_reported(visits: list[Visit]) -> None:
     (session, analysis) = visits[0]
-    spans = tuple(
-        replace(span, joints={j: replace(found, zero=ZeroKind.NONE) for j, found in span.joints.items()})
-        for span in analysis.calibrations
-    )
-    (comparison,) = comparisons_of([(session, judged(replace(analysis, calibrations=spans)))])
+    (comparison,) = comparisons_of([(session, recalibrated(analysis, zero=ZeroKind.NONE))])
     lines = {tuple(line.split()[:2]): line for line in _table(comparison, {})}
     assert re.search(r"\d† (may be|beyond) measurement error$", lines["L", "shank_heel_rocker_deg"])
     for column in ("stride_time_s", "knee_range_deg"):
@@ -165,8 +149,7 @@ def test_the_command_writes_the_table_and_states_it(
     assert "may be measurement error" in stated
     assert "† The error rests on a figure of which the source could not be checked." in stated
     first = (tmp_path / "out" / DIFFERENCES).read_bytes()
-    with (tmp_path / "out" / DIFFERENCES).open(newline="") as file:
-        reported = list(csv.DictReader(file))
+    reported = csv_rows(tmp_path / "out" / DIFFERENCES)
     assert len(reported) == len(rows(visits)) > 2 * len(PARAMETERS)
     assert {one["verdict"] for one in reported} <= set(FLAGS)
     knee = row(rows(visits[:1]), Side.LEFT, "knee_range_deg")

@@ -6,7 +6,6 @@ What has to be stated is in `STATED`, written by hand. Each output has a functio
 gives what it states of the quantities that it reports; `OUTPUTS` lists them. Report and screen are read by their words.
 """
 
-import csv
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -33,6 +32,7 @@ from core.session import Recording, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings
 from devices.simulation.walker_body import GaitChange
 from tests.app.doubt_readers import Stated, stated_in_report, stated_on_screen
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, session_of
 
 NUMBER = (int, float)
@@ -155,11 +155,6 @@ def stated_of_value(status: str, has_value: bool) -> str:
     return status if is_reported == has_value else f"contradicts itself: {status}, {'a' if has_value else 'no'} number"
 
 
-def rows_of(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 CSV_STATUS = {  # which column of status a figure is under
     "knee range": "knee_shape_status",
     "knee swing peak": "knee_height_status",
@@ -173,7 +168,7 @@ CSV_STATUS = {  # which column of status a figure is under
 
 def in_csv(out: Path) -> dict[str, str]:
     """strides.csv and peaks.csv of figures, angles.csv and cycles.csv of curves."""
-    strides, peaks, stated = rows_of(out / "walk_1" / "strides.csv"), rows_of(out / "peaks.csv"), {}
+    strides, peaks, stated = csv_rows(out / "walk_1" / "strides.csv"), csv_rows(out / "peaks.csv"), {}
     for side in SIDES:
         used = [row for row in strides if row["side"] == side and row["used"] == "true"]
         assert used
@@ -185,7 +180,7 @@ def in_csv(out: Path) -> dict[str, str]:
         stated[f"{side} knee peak time"] = stated_of_value(word, any(row["knee_swing_peak_percent"] for row in mine))
         reported = any(row["knee_swing_peak_percent"] for row in used)
         assert reported == (stated[f"{side} knee peak time"] in (READ, CARE))
-    angles, cycles = rows_of(out / "walk_1" / "angles.csv"), rows_of(out / "walk_1" / "cycles.csv")
+    angles, cycles = csv_rows(out / "walk_1" / "angles.csv"), csv_rows(out / "walk_1" / "cycles.csv")
     for name, joint in CURVES.items():
         (status,) = {row[f"{joint}_status"] for row in angles}
         assert status == {row[f"{joint}_status"] for row in cycles}.pop()

@@ -5,19 +5,23 @@ from pathlib import Path
 
 import pytest
 
+from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
-from core.results import Analysis
-from core.session import Session
+from core.results import Analysis, RecordingAnalysis
+from core.session import RecordingKind, Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
-from tests.simulated import analysis_of, session_of
+from devices.simulation.walker_truth import RecordingTruth
+from tests.simulated import analysis_of, session_of, simulation_of
 
 NAME = "Miller"
+Visit = tuple[Session, Analysis]
+SETTINGS = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
 
 
 @pytest.fixture(scope="session")
-def visit() -> tuple[Session, Analysis]:
+def visit() -> Visit:
     """A visit in which everything that can be typed holds a name."""
-    session = session_of(WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12))))
+    session = session_of(SETTINGS)
     recordings = tuple(
         replace(r, name=f"{r.name} {NAME}", folder=f"{r.folder}_{NAME}", note=NAME, condition="=barefoot")
         for r in session.recordings
@@ -34,7 +38,28 @@ def visit() -> tuple[Session, Analysis]:
 
 
 @pytest.fixture(scope="session")
-def tables(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def walk(visit: Visit) -> RecordingAnalysis:
+    (found,) = (one for one in visit[1].recordings if one.kind is RecordingKind.WALKING)
+    return found
+
+
+@pytest.fixture(scope="session")
+def truth() -> RecordingTruth:
+    """What the walk of the visit was made of."""
+    return simulation_of(SETTINGS).truth.recordings["walk 1"]
+
+
+@pytest.fixture(scope="session")
+def exported(visit: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Every format, with the CSV files."""
+    folder = tmp_path_factory.mktemp("exported")
+    export_from_folder(*visit, list(Format), folder, is_identified=True)
+    write_results(*visit, folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def tables(visit: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of results with its CSV files and summary.json."""
     folder = tmp_path_factory.mktemp("tables")
     write_results(*visit, folder)

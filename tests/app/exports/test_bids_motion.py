@@ -1,6 +1,5 @@
 """Tests that a session leaves as BIDS-Motion has it, and comes back to the last digit."""
 
-import csv
 import json
 import re
 from collections.abc import Sequence
@@ -22,6 +21,8 @@ from devices.files.bids_motion import bids_motion_trial
 from devices.files.formats import recognised
 from devices.files.imports import ImportedFiles
 from devices.files.site_names import site_of_name
+from tests.app.exports.conftest import Visit
+from tests.app.exports.written_tables import csv_rows
 from tests.other_programs import ask_python
 from tests.swinging_sensor import swinging_sensor
 from tests.trials_of_files import import_with
@@ -63,9 +64,7 @@ def same(one: FloatArray | None, other: FloatArray | None) -> None:
         np.testing.assert_array_equal(one, other)
 
 
-def test_every_recording_of_a_visit_comes_back_to_the_last_digit(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_every_recording_of_a_visit_comes_back_to_the_last_digit(visit: Visit, tmp_path: Path) -> None:
     session = visit[0]
     write_bids(*visit, tmp_path / "bids")
     found = tables(tmp_path / "bids", "_motion.tsv")
@@ -181,7 +180,7 @@ def test_systems_without_a_known_start_come_back_together(tmp_path: Path) -> Non
     assert {one.key for one in back(tmp_path, found, list(imu)).findings} == {"not_synchronised"}
 
 
-def test_the_events_of_a_walk_are_on_the_clock_of_its_samples(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_the_events_of_a_walk_are_on_the_clock_of_its_samples(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     (tmp_path / "results").mkdir()
     write_results(session, analysis, tmp_path / "results")
@@ -189,8 +188,7 @@ def test_the_events_of_a_walk_are_on_the_clock_of_its_samples(visit: tuple[Sessi
     (events,) = tables(tmp_path / "bids", "_events.tsv")  # nobody steps while standing or in free motion
     assert "_task-walking_run-1_events.tsv" in events.name
     (written,) = (tmp_path / "results").glob("walk*/events.csv")
-    with written.open(encoding="utf-8", newline="") as file:
-        expected = list(csv.DictReader(file))
+    expected = csv_rows(written)
     rows = cells(events)
     assert [(float(row["onset"]), row["trial_type"], row["side"]) for row in rows] == [
         (float(row["time_s"]), row["event"], row["side"]) for row in expected
@@ -222,7 +220,7 @@ print(json.dumps(json.loads(done.stdout)["issues"]["issues"]))
 
 
 @pytest.mark.endurance
-def test_the_validator_of_bids_finds_no_error(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_the_validator_of_bids_finds_no_error(visit: Visit, tmp_path: Path) -> None:
     export_from_folder(*visit, [Format.BIDS], tmp_path)
     issues = ask_python("bids-validator-deno", VALIDATOR, tmp_path / "bids")
     assert [one for one in issues if one["severity"] == "error"] == []
@@ -246,9 +244,7 @@ def test_what_was_discarded_or_is_empty_does_not_leave(tmp_path: Path) -> None:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize(("born", "age"), [(1950, "76"), (1937, "89"), (1920, "89"), (None, "n/a")])
-def test_the_participant_is_reported_without_a_name(
-    visit: tuple[Session, Analysis], tmp_path: Path, born: int | None, age: str
-) -> None:
+def test_the_participant_is_reported_without_a_name(visit: Visit, tmp_path: Path, born: int | None, age: str) -> None:
     session, analysis = visit
     session = replace(session, patient=replace(session.patient, birth_year=born))
     export_from_folder(session, analysis, [Format.BIDS], tmp_path)

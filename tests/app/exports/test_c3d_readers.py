@@ -14,9 +14,8 @@ import pytest
 
 from app.exports.c3d_angles import write_c3d
 from core.body import Joint
-from core.results import Analysis, RecordingAnalysis
+from core.results import RecordingAnalysis
 from core.samples import FloatArray
-from core.session import RecordingKind, Session
 from devices.files.references.reading import read_reference
 from tests.app.exports.test_parts import longer
 from tests.other_programs import ask_python
@@ -34,11 +33,6 @@ NAMES = {
     "heel_rise": "Heel Rise",
 }
 CODE = "P-7Q2M4XKA"
-
-
-@pytest.fixture(scope="module")
-def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
-    return next(r for r in visit[1].recordings if r.kind is RecordingKind.WALKING)
 
 
 @pytest.fixture(scope="module")

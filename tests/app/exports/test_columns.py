@@ -3,6 +3,7 @@
 import csv
 import datetime
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,18 +16,19 @@ from app.summary.differences import comparisons_of, rows_of, write_compared_cycl
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Side
 from core.goals import Goal, GoalOf
-from core.results import Analysis
-from core.session import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind
 from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.app.exports.conftest import Visit
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, session_of
 
 Row = dict[str, str]
 
 
 @pytest.fixture(scope="module")
-def visit() -> tuple[Session, Analysis]:
+def visit() -> Visit:
     required = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5), Walk("walk 3", strides=5))
     session = session_of(WalkerSettings(seed=5, recordings=required, prosthetic_side=Side.LEFT))
     conditions = {"walk 1": "shoes", "walk 2": "barefoot", "walk 3": "barefoot"}
@@ -49,15 +51,14 @@ def visit() -> tuple[Session, Analysis]:
 
 
 @pytest.fixture(scope="module")
-def out(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def out(visit: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out")
     write_results(*visit, folder)
     return folder
 
 
 def rows_of_columns(folder: Path) -> list[Row]:
-    with (folder / COLUMNS).open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(folder / COLUMNS)
 
 
 def columns_in(folder: Path) -> set[tuple[str, str]]:
@@ -83,9 +84,9 @@ def test_every_column_of_every_table_is_reported_of_and_no_other(out: Path) -> N
 
 
 def test_the_tables_of_an_earlier_visit_are_reported_of_once_they_are_there(
-    visit: tuple[Session, Analysis], out: Path, tmp_path: Path
+    visit: Visit, out: Path, tmp_path: Path
 ) -> None:
-    write_results(*visit, tmp_path)
+    shutil.copytree(out, tmp_path, dirs_exist_ok=True)
     found = comparisons_of([visit, visit])[-1]
     write_differences(rows_of(found), tmp_path / VISITS)
     write_compared_cycles(found.parts, tmp_path / VISITS_CYCLES)
@@ -140,8 +141,7 @@ def test_a_column_that_nobody_described_is_an_error() -> None:
 
 
 def test_what_was_turned_is_reported_in_a_table_and_beside_its_walk(out: Path) -> None:
-    with (out / "alignments.csv").open(newline="", encoding="utf-8") as file:
-        row, again = csv.DictReader(file)
+    row, again = csv_rows(out / "alignments.csv")
     assert again["walk"] == "walk 3"
     assert (row["walk"], row["condition"], row["since"], row["part"]) == ("walk 2", "barefoot", "shoes", "pylon")
     assert (row["angle_deg"], row["turns"], row["shift_mm"], row["height_mm"]) == ("", "0.5", "", "3")
@@ -171,16 +171,14 @@ def test_programs_settings_and_returns_have_columns_of_their_own(tmp_path: Path)
         Recording("walk 3", RecordingKind.WALKING, "3", {}, "A2", alignment=AlignmentChange("B", parts[:1], "A")),
     )
     write_alignments(walks, tmp_path / "alignments.csv")
-    with (tmp_path / "alignments.csv").open(newline="", encoding="utf-8") as file:
-        rows = [tuple(row.values())[10:] for row in csv.DictReader(file)]
-    assert rows == [
+    assert [tuple(row.values())[10:] for row in csv_rows(tmp_path / "alignments.csv")] == [
         ("Walk 1", "'=Walk 2", "", "", "", ""),
         ("", "", "Swing flexion", "0", "-2.5", ""),
         ("Walk 1", "'=Walk 2", "", "", "", "A"),
     ]
 
 
-def test_where_nothing_was_changed_there_is_no_table_of_it(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_where_nothing_was_changed_there_is_no_table_of_it(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     unchanged = replace(session, recordings=tuple(replace(one, alignment=None) for one in session.recordings))
     write_results(unchanged, analysis, tmp_path)

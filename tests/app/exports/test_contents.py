@@ -13,14 +13,14 @@ import openpyxl
 import pytest
 
 from app.exports.exports import Format, export_from_folder, export_from_library
-from app.exports.result_folder import write_results
+from app.exports.fhir_bundle import bundle
 from app.exports.spreadsheet import write_spreadsheet
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from core.body import Side
 from core.findings import Finding, Severity
-from core.results import Analysis
-from core.session import Patient, Session
+from core.session import Patient
+from tests.app.exports.conftest import Visit
 from tests.quick_library import quick_library
 from tests.simulated import analysis_of
 
@@ -38,7 +38,7 @@ TYPED = Patient(
 
 
 @pytest.fixture(scope="module")
-def typed(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+def typed(visit: Visit) -> Visit:
     session, analysis = visit
     session = replace(session, patient=TYPED, operator="HK", surface="corridor", notes="=2+3")
     findings = (Finding("simulated", Severity.INFO, ""), Finding("no_standing", Severity.WARNING, "session"))
@@ -46,7 +46,7 @@ def typed(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
 
 
 @pytest.fixture(scope="module")
-def book(typed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Any:
+def book(typed: Visit, tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("xlsx") / "gaitwright.xlsx"
     write_spreadsheet(*typed, path)
     return openpyxl.load_workbook(path)
@@ -79,7 +79,7 @@ def test_the_first_sheet_shows_who_was_measured_and_how(book: Any) -> None:
     assert "Not a medical device" in reported["use"]
 
 
-def test_what_was_not_typed_has_no_row(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_what_was_not_typed_has_no_row(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     write_spreadsheet(replace(session, patient=Patient(), surface=""), analysis, tmp_path / "some.xlsx")
     rows = openpyxl.load_workbook(tmp_path / "some.xlsx")["About"].iter_rows(values_only=True)
@@ -125,9 +125,7 @@ def test_columns_have_the_unit_that_their_name_ends_with(book: Any) -> None:
     assert (of_summary["cadence_steps_min"], of_summary["knee_range_deg"]) == ("steps/min", "°")
 
 
-def test_findings_are_reported_in_words_and_there_is_no_sheet_without(
-    book: Any, typed: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_findings_are_reported_in_words_and_there_is_no_sheet_without(book: Any, typed: Visit, tmp_path: Path) -> None:
     header, *rows = book["Findings"].iter_rows(values_only=True)
     assert header == ("severity", "where", "text")
     assert [row[:2] for row in rows] == [("info", None), ("warning", "session")]
@@ -141,9 +139,10 @@ def test_the_time_of_writing_is_in_no_workbook(book: Any) -> None:
     assert book.properties.modified.year == 1980
 
 
-def test_a_c3d_has_residuals_of_zero_where_an_angle_is_known(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
-    export_from_folder(*visit, [Format.C3D], tmp_path)
-    for file in tmp_path.rglob("*.c3d"):
+def test_a_c3d_has_residuals_of_zero_where_an_angle_is_known(exported: Path) -> None:
+    files = list(exported.rglob("*.c3d"))
+    assert files
+    for file in files:
         read = ezc3d.c3d(str(file))
         data, parameters = read["data"], read["parameters"]
         assert (data["meta_points"]["residuals"] == 0.0).all()
@@ -154,9 +153,7 @@ def test_a_c3d_has_residuals_of_zero_where_an_angle_is_known(visit: tuple[Sessio
 
 
 @pytest.mark.parametrize("rows", [0, 1])
-def test_a_recording_that_hardly_began_is_a_c3d_all_the_same(
-    visit: tuple[Session, Analysis], tmp_path: Path, rows: int
-) -> None:
+def test_a_recording_that_hardly_began_is_a_c3d_all_the_same(visit: Visit, tmp_path: Path, rows: int) -> None:
     session, analysis = visit
     short = [
         replace(
@@ -176,7 +173,7 @@ def test_a_recording_that_hardly_began_is_a_c3d_all_the_same(
         assert read["parameters"]["EVENT"]["USED"]["value"][0] == 0
 
 
-def test_zero_has_no_sign(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_zero_has_no_sign(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     recordings = []
     for recording in analysis.recordings:
@@ -189,7 +186,7 @@ def test_zero_has_no_sign(visit: tuple[Session, Analysis], tmp_path: Path) -> No
         assert "-0.0" not in file.read_text()
 
 
-def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: Visit, tmp_path: Path) -> None:
     session, analysis = typed
     recordings = tuple(replace(r, condition="barfuß") for r in session.recordings)
     export_from_folder(replace(session, recordings=recordings), analysis, [Format.FHIR], tmp_path, is_identified=True)
@@ -222,9 +219,7 @@ def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session,
 
 
 @pytest.mark.parametrize(("strides", "status"), [(10, "final"), (9, "preliminary")])
-def test_ten_strides_are_final_and_nine_are_not(
-    visit: tuple[Session, Analysis], tmp_path: Path, strides: int, status: str
-) -> None:
+def test_ten_strides_are_final_and_nine_are_not(visit: Visit, tmp_path: Path, strides: int, status: str) -> None:
     """Strides are left out by hand until so many are left."""
     session, analysis = visit
     (walk,) = (recording for recording in analysis.recordings if recording.gait)
@@ -245,16 +240,15 @@ def test_ten_strides_are_final_and_nine_are_not(
     assert (counts, stance["status"]) == ([strides], status)
 
 
-def test_a_patient_of_whom_nothing_is_reported_has_neither_name_nor_sex(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def entries_of(visit: Visit, **changes: Any) -> list[dict[str, Any]]:
     session, analysis = visit
+    found: list[dict[str, Any]] = bundle(replace(session, **changes), analysis)["entry"]
+    return found
+
+
+def test_a_patient_of_whom_nothing_is_reported_has_neither_name_nor_sex(visit: Visit) -> None:
     for code, sex in (("", ""), (" ", "diverse")):
-        patient = Patient(code=code, sex=sex)
-        export_from_folder(
-            replace(session, patient=patient, started=""), analysis, [Format.FHIR], tmp_path, is_identified=True
-        )
-        reported = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]
+        reported = entries_of(visit, patient=Patient(code=code, sex=sex), started="")
         assert reported[0]["resource"].keys() <= {"resourceType", "meta", "identifier"}
         assert reported[0]["resource"]["identifier"] == [
             {"system": "urn:ietf:rfc:3986", "value": reported[0]["fullUrl"]}
@@ -263,15 +257,12 @@ def test_a_patient_of_whom_nothing_is_reported_has_neither_name_nor_sex(
 
 
 @pytest.mark.parametrize("sex", ["female", "male", "other"])
-def test_a_sex_that_fhir_knows_is_reported(visit: tuple[Session, Analysis], tmp_path: Path, sex: str) -> None:
-    session, analysis = visit
-    patient = Patient(code="P 17", sex=sex, birth_year=950)
-    export_from_folder(replace(session, patient=patient), analysis, [Format.FHIR], tmp_path, is_identified=True)
-    reported = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"][0]["resource"]
+def test_a_sex_that_fhir_knows_is_reported(visit: Visit, sex: str) -> None:
+    reported = entries_of(visit, patient=Patient(code="P 17", sex=sex, birth_year=950))[0]["resource"]
     assert (reported["gender"], reported["birthDate"]) == (sex, "0950")
 
 
-def test_an_export_shows_how_far_it_is(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_an_export_shows_how_far_it_is(visit: Visit, tmp_path: Path) -> None:
     folder = tmp_path / "library"
     folder.mkdir()
     opened = quick_library(folder)
@@ -293,16 +284,11 @@ def test_an_export_shows_how_far_it_is(visit: tuple[Session, Analysis], tmp_path
     assert all(isinstance(what, str) and 0.0 <= share <= 1.0 for share, what in reported)
 
 
-def test_the_workbook_has_what_legs_and_conditions_differ_by_as_the_files_do(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_the_workbook_has_what_legs_and_conditions_differ_by_as_the_files_do(tables: Path, exported: Path) -> None:
     """Numbers are numbers, and what is not known is empty; of one condition there is nothing to compare it with."""
-    session, analysis = visit
-    write_results(session, analysis, tmp_path)
-    write_spreadsheet(session, analysis, tmp_path / "book.xlsx")
-    book = openpyxl.load_workbook(tmp_path / "book.xlsx")
+    book = openpyxl.load_workbook(exported / "gaitwright.xlsx")
     header, *rows = book["Left vs right"].iter_rows(values_only=True)
-    with (tmp_path / "sides.csv").open(encoding="utf-8", newline="") as file:
+    with (tables / "sides.csv").open(encoding="utf-8", newline="") as file:
         written = list(csv.reader(file))
     assert list(header) == written[0]
     assert len(rows) == len(written) - 1 > 10
@@ -315,12 +301,8 @@ def test_the_workbook_has_what_legs_and_conditions_differ_by_as_the_files_do(
     assert "Differences" not in book.sheetnames
 
 
-def test_the_summary_has_the_interval_and_the_mark_of_the_range_of_both_legs(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
-    session, analysis = visit
-    write_results(session, analysis, tmp_path)
-    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+def test_the_summary_has_the_interval_and_the_mark_of_the_range_of_both_legs(tables: Path) -> None:
+    summary = json.loads((tables / "summary.json").read_text(encoding="utf-8"))
     found = [one for one in _dicts(summary) if "low_deg" in one]
     assert found
     for one in found:

@@ -1,6 +1,5 @@
 """Tests that angles.csv holds exactly the numbers of the analysis, in the columns that others rely on."""
 
-import csv
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +14,7 @@ from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind
 from core.verdicts.model import READ, Assessment, JointVerdicts, Verdict, Verdicts
+from tests.app.exports.written_tables import csv_rows
 
 GOLDEN = Path(__file__).parents[2] / "golden"
 
@@ -60,8 +60,7 @@ def test_angles_read_as_agreed(tmp_path: Path) -> None:
 
 
 def reported(path: Path, column: str) -> list[str]:
-    with path.open(newline="") as file:
-        return [row[column] for row in csv.DictReader(file)]
+    return [row[column] for row in csv_rows(path)]
 
 
 @pytest.mark.parametrize(
@@ -116,8 +115,7 @@ def test_every_number_comes_back_and_every_gap_is_an_empty_cell(
     monkeypatch.setattr(csv_report, "ROWS_PER_BLOCK", 300)
     walk = random_walk(1000)
     write_angles(walk, tmp_path / "angles.csv")
-    with (tmp_path / "angles.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(tmp_path / "angles.csv")
     assert [float(row["time_s"]) for row in rows] == walk.time_s.tolist()
     for joint, angle in walk.joints.items():
         read = [float(row[f"{joint}_deg"] or "nan") for row in rows]

@@ -14,6 +14,7 @@ import pytest
 from app.exports.csvw import METADATA
 from app.exports.result_folder import TAKEN, write_results
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, session_of
 
 PARSED: Mapping[str, Callable[[str], object]] = {
@@ -50,12 +51,11 @@ def test_every_table_is_in_it_with_its_columns_in_order(out: Path) -> None:
 def test_every_cell_that_is_not_empty_has_the_type_that_is_reported(out: Path) -> None:
     parsed = 0
     for url, columns in tables(out).items():
-        with (out / url).open(newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                for column in columns:
-                    if cell := row[column["titles"]]:
-                        PARSED[column["datatype"]](cell)
-                        parsed += column["datatype"] == "number"
+        for row in csv_rows(out / url):
+            for column in columns:
+                if cell := row[column["titles"]]:
+                    PARSED[column["datatype"]](cell)
+                    parsed += column["datatype"] == "number"
     assert parsed > 1000
 
 

@@ -10,6 +10,7 @@ import ezc3d
 import numpy as np
 import openpyxl
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.exports.c3d_angles import write_c3d
 from app.exports.fhir_bundle import bundle
@@ -20,20 +21,15 @@ from app.exports.summary import summarise
 from core.body import Joint, Side
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis
-from core.session import RecordingKind, Session
+from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, assess
+from tests.app.exports.conftest import Visit
 
 NO_ZERO = assess([GateReason("zero", Verdict.NOT_REPORTED)])
 NO_SIGN = assess([GateReason("sign", Verdict.NOT_REPORTED, 0.1, 0.25)])
 NO_AXIS = assess([GateReason("axis", Verdict.NOT_REPORTED, 12.0, 9.0, "deg")])
 Bundled = dict[tuple[str, str], dict[str, Any]]
-
-
-@pytest.fixture
-def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
-    (found,) = (one for one in visit[1].recordings if one.kind is RecordingKind.WALKING)
-    return found
 
 
 def doubted(walk: RecordingAnalysis, parts: Mapping[Joint, tuple[Assessment, Assessment, Assessment]]) -> Any:
@@ -56,7 +52,7 @@ def mixed(walk: RecordingAnalysis) -> RecordingAnalysis:
 
 
 def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_not_reported(
-    mixed: RecordingAnalysis, tmp_path: Path
+    mixed: RecordingAnalysis, tmp_path: Path, snapshot: SnapshotAssertion
 ) -> None:
     write_c3d(mixed, False, tmp_path / "angles.c3d")
     read = ezc3d.c3d(str(tmp_path / "angles.c3d"))
@@ -66,33 +62,17 @@ def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_not_repor
     assert np.nanmean(ankle) == pytest.approx(0.0, abs=1e-3)
     assert np.ptp(ankle) == pytest.approx(np.rad2deg(np.ptp(mixed.joints[Joint.LEFT_ANKLE].angle_rad)), abs=1e-3)
     assert np.nanmean(knee) == pytest.approx(np.rad2deg(np.mean(mixed.joints[Joint.LEFT_KNEE].angle_rad)), abs=1e-3)
-    assert point["DESCRIPTIONS"]["value"] == [
-        "x: knee flexion; y, z not measured",
-        "x: ankle dorsiflexion less its mean, for there is no zero; y, z not measured",
-    ]
-    stated = read["parameters"]["PROCESSING"]["STATUS"]["value"]
-    assert [text.split(":")[0] for text in stated] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
-    assert stated[0] == "left_knee: read"
-    assert stated[1].startswith(
-        "right_knee: range_only: Flexion and extension could not be distinguished (clarity 0.10, required 0.25)"
-    )
-    assert stated[2].startswith("left_ankle: no_zero: There is no standing reference")
-    assert stated[3].startswith("right_ankle: withheld: The calibration has an uncertainty of +/-12.0 deg")
+    assert [point["DESCRIPTIONS"]["value"], read["parameters"]["PROCESSING"]["STATUS"]["value"]] == snapshot
 
 
-def test_a_motion_file_leaves_out_what_is_no_pose_and_states_why(mixed: RecordingAnalysis, tmp_path: Path) -> None:
+def test_a_motion_file_leaves_out_what_is_no_pose_and_states_why(
+    mixed: RecordingAnalysis, tmp_path: Path, snapshot: SnapshotAssertion
+) -> None:
     write_motion(mixed, False, tmp_path / "angles.mot")
     head, body = (tmp_path / "angles.mot").read_text(encoding="ascii").split("endheader\n")
     assert body.splitlines()[0] == "time\tknee_angle_l"
     assert "nColumns=2\n" in head
-    lines = head.splitlines()
-    assert "knee_angle_l is here, read" in lines
-    for begin in (
-        "knee_angle_r is left out, range_only: Flexion and extension could not be",
-        "ankle_angle_l is left out, no_zero: There is no standing reference",
-        "ankle_angle_r is left out, withheld: The calibration has an uncertainty of",
-    ):
-        assert [line for line in lines if line.startswith(begin)], begin
+    assert [line for line in head.splitlines() if " is " in line] == snapshot
 
 
 def test_once_a_strap_slipped_a_format_without_a_status_per_row_has_no_angle(
@@ -132,14 +112,12 @@ def component(one: Mapping[str, Any], code: str) -> Any:
     return found
 
 
-def changed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> Analysis:
+def changed(visit: Visit, walk: RecordingAnalysis) -> Analysis:
     recordings = tuple(walk if one.name == walk.name else one for one in visit[1].recordings)
     return replace(visit[1], recordings=recordings)
 
 
-def test_a_not_reported_figure_has_its_reason_in_place_of_a_value(
-    visit: tuple[Session, Analysis], mixed: RecordingAnalysis
-) -> None:
+def test_a_not_reported_figure_has_its_reason_in_place_of_a_value(visit: Visit, mixed: RecordingAnalysis) -> None:
     found = observations(visit[0], changed(visit, mixed))
     one = found["ankle_range_deg", "right leg"]
     assert "valueQuantity" not in one
@@ -156,7 +134,7 @@ def test_a_not_reported_figure_has_its_reason_in_place_of_a_value(
     assert not any({"interpretation", "referenceRange"} & set(one) for one in found.values())
 
 
-def test_a_bundle_interprets_nothing(visit: tuple[Session, Analysis]) -> None:
+def test_a_bundle_interprets_nothing(visit: Visit) -> None:
     """No figure is high, low, normal or abnormal: what it means is for who reads it."""
     resources = [entry["resource"] for entry in bundle(*visit)["entry"]]
     observations = [one for one in resources if one["resourceType"] == "Observation"]
@@ -165,7 +143,7 @@ def test_a_bundle_interprets_nothing(visit: tuple[Session, Analysis]) -> None:
         assert "interpretation" not in reported
 
 
-def test_what_nobody_wore_was_not_performed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> None:
+def test_what_nobody_wore_was_not_performed(visit: Visit, walk: RecordingAnalysis) -> None:
     joints = {joint: angle for joint, angle in walk.joints.items() if joint.side is Side.LEFT}
     alone = replace(walk, joints=joints, gait={Side.LEFT: walk.gait[Side.LEFT]}, clocks=None)
     found = observations(visit[0], judged(changed(visit, alone)))
@@ -179,9 +157,7 @@ def test_what_nobody_wore_was_not_performed(visit: tuple[Session, Analysis], wal
 
 
 @pytest.mark.parametrize(("used", "status"), [(10, "final"), (9, "preliminary"), (3, "preliminary")])
-def test_under_ten_strides_nothing_is_final(
-    visit: tuple[Session, Analysis], walk: RecordingAnalysis, used: int, status: str
-) -> None:
+def test_under_ten_strides_nothing_is_final(visit: Visit, walk: RecordingAnalysis, used: int, status: str) -> None:
     gait = walk.gait[Side.LEFT]
     assert len(gait.strides) >= 10
     reason = (Reason.USED,) * used + (Reason.TURN,) * (len(gait.strides) - used)
@@ -196,7 +172,7 @@ def test_under_ten_strides_nothing_is_final(
         assert component(one, "strides_used")["valueInteger"] == used
 
 
-def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_the_error_of_a_figure_is_a_component_and_a_column(visit: Visit, tmp_path: Path) -> None:
     reported = summarise(visit[1])["walks"]
     (walk,) = reported.values()
     found = observations(*visit)
@@ -213,9 +189,7 @@ def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session,
     json.dumps(reported, allow_nan=False)
 
 
-def test_a_workbook_of_simulated_data_states_it_in_its_first_row(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_a_workbook_of_simulated_data_states_it_in_its_first_row(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     for is_simulated in (True, False):
         path = tmp_path / f"{is_simulated}.xlsx"
@@ -225,7 +199,7 @@ def test_a_workbook_of_simulated_data_states_it_in_its_first_row(
 
 
 def test_a_workbook_has_no_number_where_a_figure_is_not_reported(
-    visit: tuple[Session, Analysis], mixed: RecordingAnalysis, tmp_path: Path
+    visit: Visit, mixed: RecordingAnalysis, tmp_path: Path
 ) -> None:
     write_spreadsheet(visit[0], changed(visit, mixed), tmp_path / "book.xlsx")
     book = openpyxl.load_workbook(tmp_path / "book.xlsx")

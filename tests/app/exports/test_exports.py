@@ -29,11 +29,11 @@ from app.storage.stored import Action, LibraryError
 from app.system.progress import nobody
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.goals import Goal, GoalOf
-from core.results import Analysis
 from core.session import Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
+from tests.app.exports.conftest import Visit
 from tests.quick_library import quick_library
 
 NAME = "Miller"
@@ -64,9 +64,7 @@ def opened(tmp_path: Path) -> OpenedLibrary:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("required", Format)
-def test_no_name_leaves_unless_identity_is_asked_for(
-    visit: tuple[Session, Analysis], tmp_path: Path, required: Format
-) -> None:
+def test_no_name_leaves_unless_identity_is_asked_for(visit: Visit, tmp_path: Path, required: Format) -> None:
     for name in ("nameless", "again", "identified"):
         (tmp_path / name).mkdir()
         export_from_folder(*visit, [required], tmp_path / name, is_identified=name == "identified")
@@ -101,7 +99,7 @@ AGREED = Goal(
 
 
 @pytest.fixture(scope="session")
-def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+def planted(visit: Visit) -> Visit:
     """The visit with a word in everything that can be typed."""
     session, analysis = visit
     operator, notes, software, clock, sex, *_ = NEVER
@@ -135,7 +133,7 @@ def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
 @pytest.mark.endurance
 @pytest.mark.parametrize("kept", [(), *((one,) for one in Typed), tuple(Typed)])
 def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
-    planted: tuple[Session, Analysis], tmp_path: Path, kept: tuple[Typed, ...]
+    planted: Visit, tmp_path: Path, kept: tuple[Typed, ...]
 ) -> None:
     """In every byte of every file, and in what is shown before."""
     export_from_folder(*planted, list(Format), tmp_path, kept=kept)
@@ -146,7 +144,7 @@ def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
         assert not [word for word in NEVER if word in stated]
 
 
-def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: tuple[Session, Analysis]) -> None:
+def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: Visit) -> None:
     own, patient_id = Pseudonyms(bytes(32)), uuid4()
     (goal,) = own.session(patient_id, planted[0]).patient.goals
     assert (goal.by, goal.note, goal.ended_by) == ("", "", "")
@@ -156,7 +154,7 @@ def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: t
     assert goal.until - goal.agreed == datetime.timedelta(weeks=12)
 
 
-def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted: tuple[Session, Analysis]) -> None:
+def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted: Visit) -> None:
     reported = Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].alignment
     figures = PartChange(ProsthesisPart.PYLON, height_mm=3.0)
     assert reported == AlignmentChange("condition 1", (figures,), returns_to="condition 1")
@@ -165,21 +163,21 @@ def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted:
     assert Pseudonyms(bytes(32)).session(uuid4(), only_words).recordings[0].alignment is None
 
 
-def test_which_test_a_walk_is_leaves_with_the_instants_of_its_keys(planted: tuple[Session, Analysis]) -> None:
+def test_which_test_a_walk_is_leaves_with_the_instants_of_its_keys(planted: Visit) -> None:
     test = PlannedTest(TimedProtocol.TEN_METRES, end_key_s=9.5)
     timed = replace(planted[0], recordings=(replace(planted[0].recordings[0], test=test),))
     assert Pseudonyms(bytes(32)).session(uuid4(), timed).recordings[0].test == test
     assert Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].test is None
 
 
-def test_all_that_was_typed_leaves_with_identity(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_all_that_was_typed_leaves_with_identity(planted: Visit, tmp_path: Path) -> None:
     """So that the words that must not leave above are words that could."""
     export_from_folder(*planted, [Format.XLSX, Format.FHIR], tmp_path, is_identified=True)
     stated = everything_in(tmp_path)
     assert not [word for word in (*PLANTED.values(), NEVER[0], NEVER[1], "birth", NAME) if word not in stated]
 
 
-def test_an_age_leaves_in_place_of_the_year_of_birth(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_an_age_leaves_in_place_of_the_year_of_birth(planted: Visit, tmp_path: Path) -> None:
     export_from_folder(*planted, [Format.XLSX, Format.FHIR], tmp_path)
     assert ("age, years", "76") in preview_from_folder(planted[0])
     about = everything_in(tmp_path)
@@ -190,7 +188,7 @@ def test_an_age_leaves_in_place_of_the_year_of_birth(planted: tuple[Session, Ana
     assert age["valueQuantity"]["value"] == 76
 
 
-def test_people_of_ninety_and_more_are_of_one_age(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_people_of_ninety_and_more_are_of_one_age(planted: Visit, tmp_path: Path) -> None:
     session, analysis = planted
     for born, age in ((1937, "89"), (1936, "90+"), (1920, "90+"), (2027, ""), (None, "")):
         assert age_in_words(replace(session, patient=replace(session.patient, birth_year=born))) == age
@@ -202,7 +200,7 @@ def test_people_of_ninety_and_more_are_of_one_age(planted: tuple[Session, Analys
     assert (age["valueQuantity"]["value"], age["valueQuantity"]["comparator"]) == (90, ">=")
 
 
-def test_conditions_without_their_words_are_numbered(planted: tuple[Session, Analysis]) -> None:
+def test_conditions_without_their_words_are_numbered(planted: Visit) -> None:
     session = planted[0]
     typed = ("Anna barefoot", "", "Anna barefoot", "shoes of Bob")
     recordings = tuple(
@@ -218,7 +216,7 @@ def code_of(session: Session) -> object:
 
 
 def test_a_session_of_no_library_gets_the_same_pseudonym_in_every_export_of_this_computer(
-    visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    visit: Visit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session, analysis = visit
     stated = []
@@ -238,7 +236,7 @@ def test_a_session_of_no_library_gets_the_same_pseudonym_in_every_export_of_this
 
 
 def test_where_no_key_can_be_kept_an_export_is_made_all_the_same(
-    visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    visit: Visit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setattr(folder_pseudonyms, "key_file", lambda: tmp_path / "file" / "pseudonyms.key")
@@ -246,7 +244,7 @@ def test_where_no_key_can_be_kept_an_export_is_made_all_the_same(
 
 
 def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
-    visit: tuple[Session, Analysis], opened: OpenedLibrary, tmp_path: Path
+    visit: Visit, opened: OpenedLibrary, tmp_path: Path
 ) -> None:
     session, analysis = visit
     with opened:
@@ -283,7 +281,7 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
             export_from_library(opened, uuid4(), [Format.MOT], tmp_path, {}, nobody)
 
 
-def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_files_lie_as_those_of_the_analysis(visit: Visit, tmp_path: Path) -> None:
     export_from_folder(*visit, list(Format), tmp_path)
     assert [name for name in files_in(tmp_path) if not name.startswith("bids/")] == [
         "fhir_bundle.json",
@@ -299,7 +297,7 @@ def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp
 
 
 def test_a_format_that_fails_takes_no_other_with_it(
-    visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    visit: Visit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object, **__: object) -> str:
         raise RuntimeError("what its library threw")
@@ -313,7 +311,7 @@ def test_a_format_that_fails_takes_no_other_with_it(
 
 
 def test_a_missing_library_is_reported_before_anything_is_done(
-    visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    visit: Visit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(exports, "find_spec", lambda name: None)
     with pytest.raises(FileRefusedError, match="ezc3d"):

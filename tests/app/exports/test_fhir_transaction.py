@@ -10,16 +10,18 @@ from urllib.parse import unquote
 
 import pytest
 from fhir.resources.R4B.bundle import Bundle
+from syrupy.assertion import SnapshotAssertion
 
 from app.exports.exports import Format, export_from_folder
 from app.exports.fhir_bundle import bundle, write_bundle
 from core.body import Side
 from core.prosthesis import AmputationLevel, Prosthesis
-from core.results import Analysis, RecordingAnalysis
-from core.session import Patient, RecordingKind, Session
+from core.results import RecordingAnalysis
+from core.session import Patient, RecordingKind
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import GateReason, Verdict, assess
+from tests.app.exports.conftest import Visit
 from tests.app.exports.test_timed_csv import TWO
 from tests.other_programs import ask_node
 
@@ -28,12 +30,12 @@ OURS = "urn:x-gaitwright:parameter"
 
 
 @pytest.fixture(scope="module")
-def coded(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+def coded(visit: Visit) -> Visit:
     session, analysis = visit
     return replace(session, patient=Patient(code="P 17|x&y", sex="female", birth_year=1950)), analysis
 
 
-def with_tests(visit: tuple[Session, Analysis], *tests: TimedTest) -> tuple[Session, Analysis]:
+def with_tests(visit: Visit, *tests: TimedTest) -> Visit:
     """The walk again and again, each a timed test."""
     session, analysis = visit
     (walk,) = (one for one in analysis.recordings if one.kind is RecordingKind.WALKING)
@@ -87,7 +89,7 @@ def _resolved(part: dict[str, Any], places: dict[str, str]) -> dict[str, Any]:
     return part
 
 
-def test_a_bundle_that_is_posted_twice_is_there_once(coded: tuple[Session, Analysis]) -> None:
+def test_a_bundle_that_is_posted_twice_is_there_once(coded: Visit) -> None:
     server, found = Server(), bundle(*coded)
     server.post(found)
     held = dict(server.held)
@@ -104,7 +106,7 @@ def test_a_bundle_that_is_posted_twice_is_there_once(coded: tuple[Session, Analy
         assert held[place]["device"]["reference"] == device
 
 
-def test_a_corrected_figure_replaces_what_was_posted_and_a_known_patient_stays(coded: tuple[Session, Analysis]) -> None:
+def test_a_corrected_figure_replaces_what_was_posted_and_a_known_patient_stays(coded: Visit) -> None:
     server = Server()
     session, analysis = coded
     server.held["Patient/7"] = {
@@ -134,7 +136,7 @@ def _is_of(resource: dict[str, Any], code: str) -> bool:
     return any(one.get("code") == code for one in resource.get("code", {}).get("coding", ()))
 
 
-def test_visits_and_people_never_replace_each_other(visit: tuple[Session, Analysis]) -> None:
+def test_visits_and_people_never_replace_each_other(visit: Visit) -> None:
     """Also those of whom neither code nor day is known."""
     session, analysis = visit
     nobody = replace(session, patient=Patient(), started="")
@@ -156,7 +158,7 @@ def test_visits_and_people_never_replace_each_other(visit: tuple[Session, Analys
     assert (kinds.count("Patient"), kinds.count("DiagnosticReport"), kinds.count("Device")) == (4, 5, 1)
 
 
-def test_two_visits_of_one_day_without_a_time_never_replace_each_other(coded: tuple[Session, Analysis]) -> None:
+def test_two_visits_of_one_day_without_a_time_never_replace_each_other(coded: Visit) -> None:
     """Imported sessions have a date at most."""
     session, analysis = coded
     server = Server()
@@ -169,7 +171,7 @@ def test_two_visits_of_one_day_without_a_time_never_replace_each_other(coded: tu
     assert len(server.held) == count  # again, it is known
 
 
-def test_a_corrected_prosthesis_replaces_what_was_posted(coded: tuple[Session, Analysis]) -> None:
+def test_a_corrected_prosthesis_replaces_what_was_posted(coded: Visit) -> None:
     session, analysis = coded
     server = Server()
     for level in (AmputationLevel.TRANSTIBIAL, AmputationLevel.TRANSFEMORAL):
@@ -180,7 +182,7 @@ def test_a_corrected_prosthesis_replaces_what_was_posted(coded: tuple[Session, A
 
 
 @pytest.mark.parametrize("unknown", [{}, {"age_years": "71"}])
-def test_a_session_without_a_walk_has_no_report(coded: tuple[Session, Analysis], unknown: dict[str, object]) -> None:
+def test_a_session_without_a_walk_has_no_report(coded: Visit, unknown: dict[str, object]) -> None:
     session, analysis = coded
     standing = [one for one in analysis.recordings if one.kind is not RecordingKind.WALKING]
     found = bundle(
@@ -199,7 +201,7 @@ def _lists(part: Any) -> Iterator[list[Any]]:
         yield from _lists(inner)
 
 
-def test_left_and_right_have_no_code_alone_in_common(coded: tuple[Session, Analysis]) -> None:
+def test_left_and_right_have_no_code_alone_in_common(coded: Visit) -> None:
     first = {"left leg": set[str](), "right leg": set[str]()}
     for one in resources(bundle(*coded), "Observation"):
         if "bodySite" in one:
@@ -211,7 +213,7 @@ def test_left_and_right_have_no_code_alone_in_common(coded: tuple[Session, Analy
     assert len(first["left leg"]) == len(first["right leg"]) > 10
 
 
-def test_figures_have_the_digits_that_they_can_have(coded: tuple[Session, Analysis]) -> None:
+def test_figures_have_the_digits_that_they_can_have(coded: Visit) -> None:
     decimals = {"deg": 1, "%": 1, "s": 3, "m": 3, "m/s": 3, "/min": 1}
     quantities = list(_quantities(bundle(*coded)))
     assert len(quantities) > 100
@@ -230,9 +232,7 @@ def _quantities(part: Any) -> Iterator[dict[str, Any]]:
 
 
 @pytest.mark.parametrize(("doubt", "status"), [(None, "final"), (Verdict.CARE, "preliminary")])
-def test_a_report_is_final_where_every_part_is(
-    coded: tuple[Session, Analysis], doubt: Verdict | None, status: str
-) -> None:
+def test_a_report_is_final_where_every_part_is(coded: Visit, doubt: Verdict | None, status: str) -> None:
     session, analysis = coded
     recordings = []
     for one in analysis.recordings:
@@ -250,13 +250,13 @@ def test_a_report_is_final_where_every_part_is(
     assert not {"conclusion", "conclusionCode"} & set(report)  # what it means is for who reads it
 
 
-def test_what_made_the_figures_is_a_device(coded: tuple[Session, Analysis]) -> None:
+def test_what_made_the_figures_is_a_device(coded: Visit) -> None:
     (device,) = resources(bundle(*coded), "Device")
     assert device["deviceName"] == [{"name": "gaitwright", "type": "user-friendly-name"}]
     assert "Not a medical device" in device["note"][0]["text"]
 
 
-def test_dates_are_moved_and_not_left_out(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_dates_are_moved_and_not_left_out(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     export_from_folder(session, analysis, [Format.FHIR], tmp_path)
     found = json.loads((tmp_path / "fhir_bundle.json").read_text(encoding="utf-8"))
@@ -266,64 +266,47 @@ def test_dates_are_moved_and_not_left_out(visit: tuple[Session, Analysis], tmp_p
     assert not when.startswith("2026-11-21")
 
 
-@pytest.mark.parametrize(
-    ("protocol", "column", "unit", "loinc"),
-    [
-        (TimedProtocol.UP_AND_GO, "time_s", "s", "89423-8"),
-        (TimedProtocol.SIX_MINUTES, "distance_m", "m", "64098-7"),
-        (TimedProtocol.TWO_MINUTES, "distance_m", "m", ""),
-        (TimedProtocol.TEN_METRES, "speed_m_s", "m/s", ""),
-        (TimedProtocol.SIT_TO_STAND, "time_s", "s", ""),
-        (TimedProtocol.STAIRS, "time_s", "s", ""),
-    ],
-)
-def test_a_timed_test_has_its_result_and_a_code_of_loinc_where_there_is_one(
-    coded: tuple[Session, Analysis], protocol: TimedProtocol, column: str, unit: str, loinc: str
-) -> None:
-    test = replace(TWO, protocol=protocol, missing=())
-    (one,) = (one for one in resources(bundle(*with_tests(coded, test)), "Observation") if _is_test(one))
-    codes = [(part["system"], part["code"]) for part in one["code"]["coding"]]
-    own = (OURS, f"timed_{str(protocol).replace(' ', '_')}_{column}")
-    assert codes == ([(LOINC, loinc), own] if loinc else [own])
-    value = one["valueQuantity"]
-    assert value["value"] == pytest.approx(getattr(test, column), abs=6e-4)
-    assert (value["system"], value["code"]) == ("http://unitsofmeasure.org", unit)
-    parts = {part["code"]["coding"][0]["code"]: part for part in one["component"]}
-    assert set(parts) == {"time_s", "distance_m", "speed_m_s", "cadence_steps_min", "started_by", "ended_by"} - {column}
-    assert (parts["started_by"]["valueString"], parts["ended_by"]["valueString"]) == ("key", "motion")
-    assert one["status"] == "final"
-    assert "interpretation" not in one
-
-
 def _is_test(one: dict[str, Any]) -> bool:
     return any(part["code"].startswith("timed_") for part in one["code"]["coding"])
 
 
-@pytest.mark.parametrize(
-    ("test", "status", "absent", "phrase"),
-    [
-        (replace(TWO, missing=(NotMeasured.SILENT,)), "preliminary", "", "a foot sensor"),
-        (
-            replace(TWO, end_s=math.nan, distance_m=math.nan, missing=(NotMeasured.NOT_FINISHED,)),
-            "preliminary",
-            "error",
-            "ended before",
-        ),
-        (replace(TWO, distance_m=math.nan, missing=(NotMeasured.NO_FEET,)), "cancelled", "not-performed", "no foot"),
-    ],
-)
-def test_what_a_test_did_not_measure_has_its_reason(
-    coded: tuple[Session, Analysis], test: TimedTest, status: str, absent: str, phrase: str
-) -> None:
+def of_test(coded: Visit, test: TimedTest) -> dict[str, Any]:
+    """What a bundle shows of a timed test, without what it shows of whose and when it was."""
     (one,) = (one for one in resources(bundle(*with_tests(coded, test)), "Observation") if _is_test(one))
-    assert one["status"] == status
-    assert ("valueQuantity" in one) is not bool(absent)
-    assert [part["code"] for part in one.get("dataAbsentReason", {}).get("coding", ())] == ([absent] if absent else [])
-    notes = [note["text"] for note in one["note"]]
-    assert any(phrase in text.lower() for text in notes)
+    parts = {
+        part["code"]["coding"][0]["code"]: next(value for name, value in part.items() if name.startswith("value"))
+        for part in one["component"]
+    }
+    return {
+        "code": [f"{part['system']} {part['code']}" for part in one["code"]["coding"]],
+        "value": one.get("valueQuantity"),
+        "absent": [part["code"] for part in one.get("dataAbsentReason", {}).get("coding", ())],
+        "components": {name: value["value"] if isinstance(value, dict) else value for name, value in parts.items()},
+        "status": one["status"],
+        "notes": [note["text"] for note in one["note"]],
+        "is_interpreted": "interpretation" in one,
+    }
 
 
-def test_a_distance_whose_feet_are_in_doubt_is_preliminary_and_a_time_is_not(coded: tuple[Session, Analysis]) -> None:
+def test_a_timed_test_has_its_result_and_a_code_of_loinc_where_there_is_one(
+    coded: Visit, snapshot: SnapshotAssertion
+) -> None:
+    found = {str(one): of_test(coded, replace(TWO, protocol=one, missing=())) for one in TimedProtocol}
+    assert found == snapshot
+    assert {one["value"]["system"] for one in found.values()} == {"http://unitsofmeasure.org"}
+
+
+def test_what_a_test_did_not_measure_has_its_reason(coded: Visit, snapshot: SnapshotAssertion) -> None:
+    nan = math.nan
+    tests = {
+        "a silent sensor": replace(TWO, missing=(NotMeasured.SILENT,)),
+        "not finished": replace(TWO, end_s=nan, distance_m=nan, missing=(NotMeasured.NOT_FINISHED,)),
+        "no feet": replace(TWO, distance_m=nan, missing=(NotMeasured.NO_FEET,)),
+    }
+    assert {name: of_test(coded, test) for name, test in tests.items()} == snapshot
+
+
+def test_a_distance_whose_feet_are_in_doubt_is_preliminary_and_a_time_is_not(coded: Visit) -> None:
     session, analysis = coded
     doubted = assess([GateReason("distance", Verdict.CARE)])
     (walk,) = (one for one in analysis.recordings if one.kind is RecordingKind.WALKING)
@@ -342,7 +325,7 @@ def test_a_distance_whose_feet_are_in_doubt_is_preliminary_and_a_time_is_not(cod
 EVERY_TEST = tuple(replace(TWO, protocol=protocol) for protocol in TimedProtocol)
 
 
-def test_fhir_resources_takes_the_transaction(coded: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_fhir_resources_takes_the_transaction(coded: Visit, tmp_path: Path) -> None:
     write_bundle(*with_tests(coded, *EVERY_TEST), tmp_path / "bundle.json")
     read = Bundle.model_validate_json((tmp_path / "bundle.json").read_bytes())
     entries: list[Any] = list(read.entry or ())
@@ -368,7 +351,7 @@ console.log(JSON.stringify({
 
 
 @pytest.mark.endurance
-def test_fhir_of_npm_finds_no_error(coded: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_fhir_of_npm_finds_no_error(coded: Visit, tmp_path: Path) -> None:
     write_bundle(*with_tests(coded, *EVERY_TEST), tmp_path / "bundle.json")
     assert ask_node("fhir", NPM_FHIR, tmp_path / "bundle.json") | {"count": 0} == {
         "valid": True,

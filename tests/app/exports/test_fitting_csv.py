@@ -3,7 +3,6 @@
 They hold nothing of what is not reported.
 """
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from core.results import RecordingAnalysis
 from core.verdicts.model import Assessment, LegVerdicts, Verdict
 from core.verdicts.quantities import FITTING
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, simulation_of
 
 BAD = Assessment(Verdict.NOT_REPORTED)
@@ -30,8 +30,7 @@ def walk() -> RecordingAnalysis:
 
 def strides_in(walk: RecordingAnalysis, folder: Path) -> list[dict[str, str]]:
     write_fitting_strides(walk, folder)
-    with (folder / "fitting.csv").open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(folder / "fitting.csv")
 
 
 def means_of(walk: RecordingAnalysis) -> dict[tuple[str, str], dict[str, str]]:

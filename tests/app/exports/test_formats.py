@@ -1,6 +1,5 @@
 """Tests that every format holds the numbers of the CSV files, and that other programs can read it."""
 
-import csv
 import json
 import shutil
 import subprocess
@@ -20,22 +19,14 @@ from app.exports.fhir_bundle import bundle, write_bundle
 from app.exports.opensim_motion import COORDINATES, write_motion
 from app.exports.spreadsheet import write_spreadsheet
 from app.summary.events import events_of
-from core.results import Analysis, RecordingAnalysis
+from core.results import RecordingAnalysis
 from core.samples import FloatArray
-from core.session import RecordingKind, Session
-
-
-def walk_of(analysis: Analysis) -> RecordingAnalysis:
-    return next(r for r in analysis.recordings if r.kind is RecordingKind.WALKING)
-
-
-def rows_of(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="") as file:
-        return list(csv.DictReader(file))
+from tests.app.exports.conftest import Visit
+from tests.app.exports.written_tables import csv_rows
 
 
 def column(path: Path, name: str) -> FloatArray:
-    return np.array([float(row[name] or "nan") for row in rows_of(path)])
+    return np.array([float(row[name] or "nan") for row in csv_rows(path)])
 
 
 def sheet_rows(path: Path, title: str) -> list[dict[str, Any]]:
@@ -44,7 +35,7 @@ def sheet_rows(path: Path, title: str) -> list[dict[str, Any]]:
 
 
 @pytest.fixture(scope="module")
-def workbook(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def workbook(visit: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("xlsx") / "gaitwright.xlsx"
     write_spreadsheet(*visit, path)
     return path
@@ -52,11 +43,10 @@ def workbook(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathF
 
 @pytest.mark.parametrize("name", ["strides", "cycles", "events"])
 def test_a_sheet_holds_the_cells_of_its_csv_file(
-    visit: tuple[Session, Analysis], tables: Path, workbook: Path, name: str
+    walk: RecordingAnalysis, tables: Path, workbook: Path, name: str
 ) -> None:
-    walk = walk_of(visit[1])
     found = [row for row in sheet_rows(workbook, name.capitalize()) if row["recording"] == walk.name]
-    reported = rows_of(tables / walk.folder / f"{name}.csv")
+    reported = csv_rows(tables / walk.folder / f"{name}.csv")
     assert len(found) == len(reported) > 10
     for one, other in zip(found, reported, strict=True):
         for key, cell in other.items():
@@ -71,10 +61,9 @@ def test_a_sheet_holds_the_cells_of_its_csv_file(
 
 
 def test_the_summary_holds_the_means_of_summary_json_with_their_units(
-    visit: tuple[Session, Analysis], tables: Path, workbook: Path
+    walk: RecordingAnalysis, tables: Path, workbook: Path
 ) -> None:
-    walk = walk_of(visit[1]).name
-    reported = json.loads((tables / "summary.json").read_text())["walks"][walk]
+    reported = json.loads((tables / "summary.json").read_text())["walks"][walk.name]
     found = {(row["side"], row["parameter"]): row for row in sheet_rows(workbook, "Summary")}
     assert len(found) > 30
     for (side, parameter), row in found.items():
@@ -100,9 +89,7 @@ def test_what_was_typed_is_no_formula_and_simulated_is_stated(workbook: Path) ->
     assert book["About"]["A2"].value.startswith("SIMULATED")
 
 
-def test_the_same_analysis_gives_the_same_workbook(
-    visit: tuple[Session, Analysis], workbook: Path, tmp_path: Path
-) -> None:
+def test_the_same_analysis_gives_the_same_workbook(visit: Visit, workbook: Path, tmp_path: Path) -> None:
     write_spreadsheet(*visit, tmp_path / "again.xlsx")
     assert (tmp_path / "again.xlsx").read_bytes() == workbook.read_bytes()
     assert zipfile.ZipFile(workbook).testzip() is None
@@ -117,10 +104,7 @@ def test_libreoffice_opens_the_workbook(workbook: Path, tmp_path: Path) -> None:
     assert "SIMULATED" in (tmp_path / "gaitwright.csv").read_text()
 
 
-def test_the_motion_file_holds_the_rows_of_the_angles(
-    visit: tuple[Session, Analysis], tables: Path, tmp_path: Path
-) -> None:
-    walk = walk_of(visit[1])
+def test_the_motion_file_holds_the_rows_of_the_angles(walk: RecordingAnalysis, tables: Path, tmp_path: Path) -> None:
     write_motion(walk, True, tmp_path / "angles.mot")  # its model takes no knee that is straighter than straight
     head, body = (tmp_path / "angles.mot").read_text().split("endheader\n")
     header, *lines = body.splitlines()
@@ -139,8 +123,7 @@ def test_the_motion_file_holds_the_rows_of_the_angles(
         np.testing.assert_array_equal(values[:, names.index(name)], expected_deg)
 
 
-def test_the_c3d_holds_the_angles_and_the_events(visit: tuple[Session, Analysis], tables: Path, tmp_path: Path) -> None:
-    walk = walk_of(visit[1])
+def test_the_c3d_holds_the_angles_and_the_events(walk: RecordingAnalysis, tables: Path, tmp_path: Path) -> None:
     write_c3d(walk, True, tmp_path / "angles.c3d")
     read = ezc3d.c3d(str(tmp_path / "angles.c3d"))
     point, event = read["parameters"]["POINT"], read["parameters"]["EVENT"]
@@ -151,7 +134,7 @@ def test_the_c3d_holds_the_angles_and_the_events(visit: tuple[Session, Analysis]
         joint = next(joint for joint, name in POINTS.items() if name == label)
         reported_deg = column(angles, f"{joint}_deg")
         np.testing.assert_array_equal(read["data"]["points"][0, k], reported_deg.astype(np.float32))
-    events = rows_of(tables / walk.folder / "events.csv")
+    events = csv_rows(tables / walk.folder / "events.csv")
     events.sort(key=lambda row: (row["event"] not in ("initial_contact", "toe_off"), float(row["time_s"])))
     minutes, seconds = event["TIMES"]["value"]
     reported_s = np.array([float(row["time_s"]) for row in events]) - walk.time_s[0]
@@ -163,8 +146,7 @@ def test_the_c3d_holds_the_angles_and_the_events(visit: tuple[Session, Analysis]
     assert read["parameters"]["SUBJECTS"]["NOTE"]["value"][0].startswith("SIMULATED")
 
 
-def test_a_gap_of_the_angles_and_a_missing_row_are_no_points(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
-    walk = walk_of(visit[1])
+def test_a_gap_of_the_angles_and_a_missing_row_are_no_points(walk: RecordingAnalysis, tmp_path: Path) -> None:
     joint, angle = next(iter(walk.joints.items()))
     angle_rad = angle.angle_rad.copy()
     angle_rad[10:13] = np.nan
@@ -180,8 +162,7 @@ def test_a_gap_of_the_angles_and_a_missing_row_are_no_points(visit: tuple[Sessio
     np.testing.assert_allclose(read["data"]["points"][0, 0, 70:], after_deg, atol=1e-4)
 
 
-def test_many_events_are_all_there(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
-    walk = walk_of(visit[1])
+def test_many_events_are_all_there(walk: RecordingAnalysis, tmp_path: Path) -> None:
     side, gait = next(iter(walk.gait.items()))
     many = replace(walk, gait={side: replace(gait, events=gait.events * 12)})
     write_c3d(many, False, tmp_path / "angles.c3d")
@@ -197,7 +178,7 @@ def test_many_events_are_all_there(visit: tuple[Session, Analysis], tmp_path: Pa
     np.testing.assert_allclose(times_s, [time_s - many.time_s[0] for time_s, _, _ in reported], atol=1e-4)
 
 
-def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], tables: Path, tmp_path: Path) -> None:
+def test_another_library_takes_the_bundle(visit: Visit, walk: RecordingAnalysis, tables: Path, tmp_path: Path) -> None:
     write_bundle(*visit, tmp_path / "bundle.json")
     read = Bundle.model_validate_json((tmp_path / "bundle.json").read_bytes())
     assert read.entry is not None
@@ -205,7 +186,7 @@ def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], table
     patient = resources[0]
     observations = [one for one in resources if one.get_resource_type() == "Observation"]
     assert (patient.gender, patient.get_resource_type()) == ("female", "Patient")
-    reported = json.loads((tables / "summary.json").read_text())["walks"][walk_of(visit[1]).name]
+    reported = json.loads((tables / "summary.json").read_text())["walks"][walk.name]
     assert len(observations) > 30
     differing: list[Any] = []
     for one in observations:
@@ -229,8 +210,7 @@ def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], table
         assert any(note.text.startswith("SIMULATED") for note in one.note)
     names = [one.fullUrl for one in read.entry]
     assert len(set(names)) == len(names)
-    with (tables / "sides.csv").open(encoding="utf-8", newline="") as file:
-        rows = {row["parameter"]: row for row in csv.DictReader(file)}
+    rows = {row["parameter"]: row for row in csv_rows(tables / "sides.csv")}
     assert len(differing) > 5
     for one in differing:
         row = rows[one.code.coding[0].code.removesuffix("_difference")]
@@ -245,7 +225,7 @@ def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], table
         assert "beyond_speed" not in parts  # both legs walked at one speed
 
 
-def test_a_date_without_a_zone_is_reported_as_a_day(visit: tuple[Session, Analysis]) -> None:
+def test_a_date_without_a_zone_is_reported_as_a_day(visit: Visit) -> None:
     session, analysis = visit
     for started, reported in (("2026-11-21T10:00:00", "2026-11-21"), ("2026-11-21T10:00:00+01:00", None), ("soon", "")):
         resources = [entry["resource"] for entry in bundle(replace(session, started=started), analysis)["entry"]]

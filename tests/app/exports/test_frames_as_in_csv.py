@@ -1,6 +1,5 @@
 """Tests that a data frame states what the CSV files of the same session state, cell by cell."""
 
-import csv
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -10,14 +9,15 @@ import numpy as np
 import pytest
 
 from app.cli.main import main
+from app.cohort.batch import analysed_folder
 from app.exports.csv_report import write_angles
 from app.exports.gait_csv import write_gait
-from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis, RecordingAnalysis
 from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import FreeMotion, Motion, Standing, Walk, WalkerSettings
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, session_of
 
 HALF_A_DIGIT = 0.51e-5  # files have five decimals
@@ -46,11 +46,6 @@ DOUBTED = {  # each word of status once
 WORDS = {"left_knee": "care", "left_ankle": "no_zero", "right_knee": "range_only", "right_ankle": "withheld"}
 
 
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def number(cell: str) -> float:
     return float(cell) if cell else math.nan
 
@@ -70,7 +65,7 @@ def assert_equal(found: list[list[Any]], place: int, cells: list[str]) -> None:
 
 def hold_angles(analysis: Analysis, recording: RecordingAnalysis, path: Path) -> int:
     """Hold every column of angles.csv to the frame; how many curves there are."""
-    table, found = rows(path), in_frame(analysis, "angles", recording)
+    table, found = csv_rows(path), in_frame(analysis, "angles", recording)
     columns = [name for name in table[0] if name.endswith("_deg") and not name.endswith("_sd_deg")]
     for column in columns:
         side, _, quantity = column.partition("_") if not column.startswith("pelvis") else ("", "", column)
@@ -87,7 +82,7 @@ def hold_angles(analysis: Analysis, recording: RecordingAnalysis, path: Path) ->
 
 
 def hold_cycles(analysis: Analysis, recording: RecordingAnalysis, path: Path) -> int:
-    table, found = rows(path), in_frame(analysis, "cycles", recording)
+    table, found = csv_rows(path), in_frame(analysis, "cycles", recording)
     cells = {name: [row[name] for row in table] for name in (table[0] if table else {})}
     joints = [name.removesuffix("_mean_deg") for name in cells if name.endswith("_mean_deg")]
     for joint in joints:
@@ -111,7 +106,7 @@ OWN_STATUS |= {"hip_range_deg": "hip_shape", "hip_abduction_range_deg": "hip_abd
 
 
 def hold_strides(analysis: Analysis, recording: RecordingAnalysis, path: Path) -> int:
-    table, found, held = rows(path), in_frame(analysis, "strides", recording), 0
+    table, found, held = csv_rows(path), in_frame(analysis, "strides", recording), 0
     for (side, quantity), figures in found.items():
         mine = [row for row in table if row["side"] == side]
         assert_equal(figures, 2, [row["start_s"] for row in mine])
@@ -126,12 +121,13 @@ def hold_strides(analysis: Analysis, recording: RecordingAnalysis, path: Path) -
 
 @pytest.mark.parametrize(("settings", "most_curves"), [(WITH_PELVIS, 19), (WITHOUT_STANDING, 6)])
 def test_a_frame_states_what_the_files_of_a_session_state(
-    settings: WalkerSettings, most_curves: int, tmp_path: Path
+    settings: WalkerSettings, most_curves: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(analysed_folder, "analyse", lambda session, *_: analysis_of(session))
     write_session(session_of(settings), tmp_path / "session")
     out = tmp_path / "out"
     assert main(["analyse", str(tmp_path / "session"), "--out", str(out), "--no-report", "--no-rrd"]) == 0
-    analysis = analyse(read_session(tmp_path / "session"))
+    analysis = analysis_of(read_session(tmp_path / "session"))
     curves, cycles, strides = [], [], []
     for recording in analysis.recordings:
         folder = out / recording.folder

@@ -1,6 +1,5 @@
 """Tests that events, strides, cycles and averages match what the simulated patient did."""
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from core.results import Analysis
 from core.verdicts.gates import judged
 from core.verdicts.quantities import PARAMETERS, both_sides, mean_curve, values_of
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, session_of, simulation_of
 
 
@@ -38,13 +38,8 @@ def folder(found: Analysis, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def test_every_step_has_its_four_events_on_the_clock_of_the_walk(walked: SimulatedSession, folder: Path) -> None:
-    events = rows(folder / "events.csv")
+    events = csv_rows(folder / "events.csv")
     assert [float(row["time_s"]) for row in events] == sorted(float(row["time_s"]) for row in events)
     for side in Side:
         truth = walked.truth.recordings["walk 1"].feet[side].events
@@ -60,7 +55,7 @@ def test_every_step_has_its_four_events_on_the_clock_of_the_walk(walked: Simulat
 
 
 def test_strides_are_as_long_as_they_were_and_say_why_they_are_left_out(walked: SimulatedSession, folder: Path) -> None:
-    strides = rows(folder / "strides.csv")
+    strides = csv_rows(folder / "strides.csv")
     assert list(strides[0]) == [
         *("side", "start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s"),
         *PARAMETERS,
@@ -77,7 +72,7 @@ def test_strides_are_as_long_as_they_were_and_say_why_they_are_left_out(walked: 
 
 
 def test_the_mean_cycle_is_the_mean_of_the_strides_used(found: Analysis, folder: Path) -> None:
-    cycles = rows(folder / "cycles.csv")
+    cycles = csv_rows(folder / "cycles.csv")
     assert [int(row["percent"]) for row in cycles] == list(range(101))
     gait = found.recordings[0].gait[Side.LEFT]
     curves = np.rad2deg(gait.cycles[Joint.LEFT_KNEE][gait.strides.is_used])
@@ -92,7 +87,7 @@ def test_the_summary_has_the_averages_of_each_side_and_what_compares_them(
     walked: SimulatedSession, found: Analysis, folder: Path
 ) -> None:
     walk = summarise(found)["walks"]["walk 1"]
-    strides = [row for row in rows(folder / "strides.csv") if row["side"] == "left"]
+    strides = [row for row in csv_rows(folder / "strides.csv") if row["side"] == "left"]
     used = [row for row in strides if row["used"] == "true"]
     assert walk["left"]["strides_used"] == len(used)
     assert walk["left"]["strides_left_out"] == len(strides) - len(used)
@@ -119,9 +114,9 @@ def test_without_a_foot_sensor_steps_come_from_the_shank_and_say_so(tmp_path: Pa
     walked = simulation_of(WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=sites))
     found = analysis_of(walked.session)
     write_gait(found.recordings[0], tmp_path)
-    names = {row["event"] for row in rows(tmp_path / "events.csv")}
+    names = {row["event"] for row in csv_rows(tmp_path / "events.csv")}
     assert names == {"initial_contact", "toe_off"}
-    assert {row["stride_length_m"] for row in rows(tmp_path / "strides.csv")} == {""}
+    assert {row["stride_length_m"] for row in csv_rows(tmp_path / "strides.csv")} == {""}
     assert "events_from_shank" in {finding.key for finding in found.findings}
 
 
@@ -153,14 +148,14 @@ def test_feet_alone_give_events_and_no_angles(tmp_path: Path) -> None:
     assert [one.joints for one in found.calibrations if one.joints] == []
     assert dict(found.recordings[0].joints) == {}
     write_gait(found.recordings[0], tmp_path)
-    events = rows(tmp_path / "events.csv")
+    events = csv_rows(tmp_path / "events.csv")
     assert {row["side"] for row in events} == {"left", "right"}
-    assert rows(tmp_path / "cycles.csv") == []
+    assert csv_rows(tmp_path / "cycles.csv") == []
 
 
 def test_the_score_is_the_distance_of_the_mean_cycle_from_the_group(found: Analysis, folder: Path) -> None:
     summary = summarise(found)
-    cycles, group = rows(folder / "cycles.csv"), reference_curves()
+    cycles, group = csv_rows(folder / "cycles.csv"), reference_curves()
     for side in Side:
         scores = summary["walks"]["walk 1"][side]["gait_variable_score_deg"]
         for kind, group_deg in (("knee", group.knee_mean_deg), ("ankle", group.ankle_mean_deg)):
@@ -188,10 +183,10 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     found = analyse(stiff.session)
     assert ("clinical_sign_uncertain", "left_knee") in {(finding.key, finding.where) for finding in found.findings}
     write_gait(found.recordings[0], tmp_path)
-    strides = [row for row in rows(tmp_path / "strides.csv") if row["side"] == "left"]
+    strides = [row for row in csv_rows(tmp_path / "strides.csv") if row["side"] == "left"]
     reported = {name for name in PARAMETERS if name.startswith("knee_") and any(row[name] for row in strides)}
     assert reported == {"knee_range_deg"}
-    cycles = rows(tmp_path / "cycles.csv")
+    cycles = csv_rows(tmp_path / "cycles.csv")
     assert {row["left_knee_mean_deg"] for row in cycles} == {""}
     assert all(row["left_knee_stride_sd_deg"] and row["right_knee_mean_deg"] for row in cycles)
     walk = summarise(found)["walks"]["walk 1"]
@@ -201,7 +196,7 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
 
     reported_by_hand = analyse(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
     write_gait(reported_by_hand.recordings[0], tmp_path)
-    assert all(row["left_knee_mean_deg"] for row in rows(tmp_path / "cycles.csv"))
+    assert all(row["left_knee_mean_deg"] for row in csv_rows(tmp_path / "cycles.csv"))
 
 
 @pytest.mark.endurance

@@ -3,7 +3,6 @@
 Their shape and range are kept.
 """
 
-import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
 from core.body import LEG_JOINTS, Joint
 from devices.simulation.walker import FreeMotion, SimulatedSession, Walk, WalkerSettings
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, simulation_of
 
 
@@ -51,10 +51,9 @@ def test_a_workbook_states_not_reported_where_a_csv_file_is_empty(folder: Path) 
         for known in ("knee_range_deg", "ankle_range_deg", "stance_percent", "stride_length_m"):
             assert isinstance(row[known], float), known
     (path,) = folder.glob("walk*/strides.csv")
-    with path.open(newline="") as file:
-        for line in csv.DictReader(file):
-            assert line["knee_swing_peak_deg"] == ""
-            assert float(line["knee_range_deg"]) > 30.0
+    for line in csv_rows(path):
+        assert line["knee_swing_peak_deg"] == ""
+        assert float(line["knee_range_deg"]) > 30.0
 
 
 def test_cycles_have_a_shape_about_their_own_mean_and_no_height(folder: Path) -> None:

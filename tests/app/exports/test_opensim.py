@@ -11,12 +11,11 @@ import pytest
 from app.exports.opensim_motion import COORDINATES, Model, write_motion
 from app.exports.opensim_orientations import write_orientations
 from core.body import LEG_JOINTS, Side
-from core.results import Analysis, RecordingAnalysis
-from core.session import RecordingKind, Session
+from core.results import RecordingAnalysis
 from devices.files.opensim_orientations import read_opensim_orientations
-from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings
+from devices.simulation.walker_truth import RecordingTruth
+from tests.app.exports.conftest import Visit
 from tests.app.exports.test_parts import missing
-from tests.simulated import simulation_of
 
 pytestmark = pytest.mark.endurance
 MISSING = "OpenSim (the extra opensim) is not installed"
@@ -25,18 +24,6 @@ MISSING = "OpenSim (the extra opensim) is not installed"
 @pytest.fixture(autouse=True)
 def _writes_its_log_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-
-
-@pytest.fixture
-def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
-    return next(r for r in visit[1].recordings if r.kind is RecordingKind.WALKING)
-
-
-@pytest.fixture(scope="module")
-def truth() -> RecordingTruth:
-    """What the walk of the fixture `visit` was made of."""
-    settings = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
-    return simulation_of(settings).truth.recordings["walk 1"]
 
 
 def test_opensim_reads_every_row(walk: RecordingAnalysis, tmp_path: Path) -> None:
@@ -148,7 +135,7 @@ def test_a_coordinate_beyond_its_range_would_be_clamped(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def orientations(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def orientations(visit: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("orientations")
     write_orientations(*visit, folder, "orientations.sto")
     return folder

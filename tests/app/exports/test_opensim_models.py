@@ -8,9 +8,8 @@ import pytest
 
 from app.exports.opensim_motion import Model, write_motion
 from core.body import Joint
-from core.results import Analysis, RecordingAnalysis
+from core.results import RecordingAnalysis
 from core.samples import FloatArray
-from core.session import RecordingKind, Session
 from devices.files.references.reading import read_reference
 from tests.app.exports.test_parts import table_of
 
@@ -20,11 +19,6 @@ RANGES = {
     Model.RAJAGOPAL2016: {"knee_angle_l": (0.0, 120.0), "ankle_angle_l": (-40.0, 30.0)},
     Model.GAIT2392: {"knee_angle_l": (-120.0, 10.0), "ankle_angle_l": (-90.0, 90.0)},
 }
-
-
-@pytest.fixture
-def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
-    return next(r for r in visit[1].recordings if r.kind is RecordingKind.WALKING)
 
 
 def bent(walk: RecordingAnalysis, knee_deg: FloatArray, ankle_deg: FloatArray) -> RecordingAnalysis:

@@ -11,14 +11,12 @@ from app.exports.exports import Format, export_from_folder
 from app.exports.opensim_orientations import IMUS, write_orientations
 from core.body import Side, Site
 from core.orientations import orientations_of
-from core.results import Analysis
 from core.samples import FloatArray
-from core.session import Session
 from core.verdicts.model import GateReason, JointVerdicts, Verdict, assess
 from devices.files.opensim_orientations import opensim_trial
-from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings
+from devices.simulation.walker import RecordingTruth
+from tests.app.exports.conftest import Visit
 from tests.app.hip_visits import hip_analysis, hip_session
-from tests.simulated import simulation_of
 
 IMU_OF = {
     "left_thigh": "femur_l_imu",
@@ -32,14 +30,7 @@ IMU_OF = {
 
 
 @pytest.fixture(scope="module")
-def truth() -> RecordingTruth:
-    """What the walk of the fixture `visit` was made of."""
-    settings = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
-    return simulation_of(settings).truth.recordings["walk 1"]
-
-
-@pytest.fixture(scope="module")
-def written(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def written(visit: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("orientations")
     assert write_orientations(*visit, folder, "orientations.sto") == []
     return folder
@@ -102,9 +93,7 @@ def test_nobody_turns_about_the_vertical(written: Path) -> None:
         assert np.abs(np.rad2deg(np.arctan2(across[:, 0], across[:, 1]))).max() < 12.0
 
 
-def test_our_reader_takes_the_orientations_back_to_the_last_digit(
-    visit: tuple[Session, Analysis], written: Path, tmp_path: Path
-) -> None:
+def test_our_reader_takes_the_orientations_back_to_the_last_digit(visit: Visit, written: Path, tmp_path: Path) -> None:
     trial = opensim_trial([of_walk(written)])
     time_s, walking = rotations(of_walk(written))
     assert trial.is_simulated
@@ -119,7 +108,7 @@ def test_our_reader_takes_the_orientations_back_to_the_last_digit(
     assert not opensim_trial([of_walk(tmp_path)]).is_simulated
 
 
-def test_a_gap_and_a_slipped_strap_end_a_table(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_a_gap_and_a_slipped_strap_end_a_table(visit: Visit, tmp_path: Path) -> None:
     session, analysis = visit
     walk = session.recordings[-1]
     block = walk.imu[Site.LEFT_SHANK]
@@ -144,9 +133,7 @@ def test_a_gap_and_a_slipped_strap_end_a_table(visit: tuple[Session, Analysis], 
     assert "tibia_l_imu is not known in this part.\n" in head
 
 
-def test_what_may_be_mirrored_or_swapped_is_left_out_and_a_line_gives_the_reason(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_what_may_be_mirrored_or_swapped_is_left_out_and_a_line_gives_the_reason(visit: Visit, tmp_path: Path) -> None:
     no_sign = assess([GateReason("sign", Verdict.NOT_REPORTED, 0.1, 0.25)])
     session, analysis = visit
     for sides, expected in (((Side.LEFT,), {"r"}), (tuple(Side), set())):
@@ -185,7 +172,7 @@ def test_a_sensor_on_the_pelvis_is_in_the_table(tmp_path: Path) -> None:
     assert np.rad2deg(np.arccos(np.clip(up, -1, 1))).max() < 15.0
 
 
-def test_an_upright_axis_gives_no_direction(visit: tuple[Session, Analysis]) -> None:
+def test_an_upright_axis_gives_no_direction(visit: Visit) -> None:
     """Somebody who lies on the side in the free motion: thigh and shank face nowhere then."""
     session, analysis = visit
     free = session.recordings[1]

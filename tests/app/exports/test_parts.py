@@ -11,18 +11,13 @@ from app.exports.c3d_angles import MOST_FRAMES, write_c3d
 from app.exports.exports import Format, export_from_folder
 from app.exports.opensim_motion import write_motion
 from core.body import Joint
-from core.results import Analysis, RecordingAnalysis
+from core.results import RecordingAnalysis
 from core.samples import FloatArray
-from core.session import RecordingKind, Session
 from core.verdicts.model import GateReason, JointVerdicts, Verdict, assess
 from devices.files.references.reading import read_reference
+from tests.app.exports.conftest import Visit
 
 KNEE = Joint.LEFT_KNEE
-
-
-@pytest.fixture
-def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
-    return next(r for r in visit[1].recordings if r.kind is RecordingKind.WALKING)
 
 
 def missing(walk: RecordingAnalysis, *rows: slice) -> RecordingAnalysis:
@@ -75,7 +70,7 @@ def test_rows_that_are_missing_for_long_end_a_motion_file_too(walk: RecordingAna
 
 
 def test_what_is_not_reported_leaves_no_empty_file_and_a_line_why(
-    visit: tuple[Session, Analysis], walk: RecordingAnalysis, tmp_path: Path
+    visit: Visit, walk: RecordingAnalysis, tmp_path: Path
 ) -> None:
     no_axis = assess([GateReason("axis", Verdict.NOT_REPORTED, 12.0, 9.0, "deg")])
     not_reported = dict.fromkeys(walk.joints, JointVerdicts(no_axis, no_axis, no_axis))
@@ -96,7 +91,7 @@ def test_what_is_not_reported_leaves_no_empty_file_and_a_line_why(
     assert export_from_folder(*visit, [Format.C3D, Format.MOT, Format.BIDS], tmp_path) == []
 
 
-def test_recordings_without_samples_are_no_set_of_data(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_recordings_without_samples_are_no_set_of_data(visit: Visit, tmp_path: Path) -> None:
     bare = replace(visit[0], recordings=tuple(replace(r, is_kept=False) for r in visit[0].recordings))
     lines = export_from_folder(bare, visit[1], [Format.BIDS], tmp_path)
     assert lines == ["bids-motion: No included recording contains sensor data."]

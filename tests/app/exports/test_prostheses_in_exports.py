@@ -14,11 +14,11 @@ from app.exports.fhir_bundle import bundle, write_bundle
 from app.exports.pseudonymised import what_leaves
 from app.exports.spreadsheet import write_spreadsheet
 from app.exports.summary import summarise
-from core.analysis import analyse
 from core.body import Side
 from core.prosthesis import NOT_STATED, AmputationLevel, FootKind, KneeKind, Prosthesis
-from core.results import Analysis
-from core.session import Patient, Session
+from core.session import Patient
+from tests.app.exports.conftest import Visit
+from tests.simulated import analysis_of
 
 LEFT = Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.POLYCENTRIC)
 RIGHT = Prosthesis(AmputationLevel.TRANSTIBIAL, foot=FootKind.ENERGY_STORING)
@@ -27,16 +27,16 @@ STATED = replace(SIDES, prostheses={Side.LEFT: LEFT, Side.RIGHT: RIGHT})
 
 
 @pytest.fixture(scope="module")
-def stated(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+def stated(visit: Visit) -> Visit:
     session = replace(visit[0], patient=STATED)
-    return session, analyse(session)
+    return session, analysis_of(session)
 
 
 def as_written(value: object) -> Any:
     return json.loads(json.dumps(value))
 
 
-def test_the_summary_ends_with_what_was_taken_for_true(stated: tuple[Session, Analysis]) -> None:
+def test_the_summary_ends_with_what_was_taken_for_true(stated: Visit) -> None:
     summary = as_written(summarise(stated[1]))
     assert list(summary)[-1] == "prostheses"
     assert summary["prostheses"] == {
@@ -45,9 +45,7 @@ def test_the_summary_ends_with_what_was_taken_for_true(stated: tuple[Session, An
     }
 
 
-def test_a_participant_has_a_column_for_each_part_that_is_stated(
-    stated: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_a_participant_has_a_column_for_each_part_that_is_stated(stated: Visit, tmp_path: Path) -> None:
     write_bids(*stated, tmp_path)
     names, values = ((line.split("\t")) for line in (tmp_path / "participants.tsv").read_text().splitlines())
     row = dict(zip(names, values, strict=True))
@@ -62,7 +60,7 @@ def test_a_participant_has_a_column_for_each_part_that_is_stated(
     assert set(names) - {"participant_id"} == set(json.loads((tmp_path / "participants.json").read_text()))
 
 
-def test_a_prosthesis_is_a_device_of_the_patient(stated: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_a_prosthesis_is_a_device_of_the_patient(stated: Visit, tmp_path: Path) -> None:
     write_bundle(*stated, tmp_path / "bundle.json")
     read = Bundle.model_validate_json((tmp_path / "bundle.json").read_bytes())
     resources: list[Any] = [entry.resource for entry in read.entry or ()]
@@ -76,9 +74,7 @@ def test_a_prosthesis_is_a_device_of_the_patient(stated: tuple[Session, Analysis
     assert len(set(urls)) == len(urls)
 
 
-def test_the_workbook_and_what_is_shown_before_it_leaves_name_it(
-    stated: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_the_workbook_and_what_is_shown_before_it_leaves_name_it(stated: Visit, tmp_path: Path) -> None:
     write_spreadsheet(*stated, tmp_path / "some.xlsx")
     rows: Any = openpyxl.load_workbook(tmp_path / "some.xlsx")["About"].iter_rows(values_only=True)
     about = {row[0]: row[1] for row in rows}
@@ -91,10 +87,10 @@ def test_the_workbook_and_what_is_shown_before_it_leaves_name_it(
     [{}, {Side.LEFT: NOT_STATED}],
 )
 def test_nothing_stated_leaves_every_file_as_it_was(
-    visit: tuple[Session, Analysis], tmp_path: Path, prostheses: dict[Side, Prosthesis]
+    visit: Visit, tmp_path: Path, prostheses: dict[Side, Prosthesis]
 ) -> None:
     session = replace(visit[0], patient=replace(SIDES, prostheses=prostheses))
-    analysis = analyse(session)
+    analysis = analysis_of(session)
     assert "prostheses" not in summarise(analysis)
     kinds = [entry["resource"]["resourceType"] for entry in bundle(session, analysis)["entry"]]
     assert kinds.count("Device") == 1  # Gaitwright

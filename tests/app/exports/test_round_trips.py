@@ -14,7 +14,6 @@ from app.exports.bids_motion import write_bids
 from app.exports.exports import Format, export_from_folder
 from app.exports.summary import summarise
 from app.summary.events import events_of
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Site
 from core.results import Analysis
 from core.session import Recording, Session
@@ -22,6 +21,8 @@ from devices.files.formats import read_trial, recognised
 from devices.files.imports import add_recording, place_trial
 from devices.files.session_folder import read_session, write_session
 from devices.files.site_names import site_of_name
+from tests.app.exports.conftest import Visit
+from tests.simulated import analysis_of
 
 TASKS = {"standing": "standing", "free_motion": "freeMotion", "walking": "walking"}
 
@@ -93,12 +94,10 @@ def figures(session: Session, analysis: Analysis) -> Mapping[str, Any]:
 
 
 @pytest.mark.parametrize("name", WAYS)
-def test_what_comes_back_has_the_same_figures_events_and_marks(
-    visit: tuple[Session, Analysis], name: str, tmp_path: Path
-) -> None:
+def test_what_comes_back_has_the_same_figures_events_and_marks(visit: Visit, name: str, tmp_path: Path) -> None:
     session, analysis = visit
     back = WAYS[name](session, analysis, tmp_path)
-    again = analyse(back)
+    again = analysis_of(back)
     assert back.is_simulated
     assert again.is_simulated
     assert [(one.name, one.kind, one.condition) for one in back.recordings] == [
@@ -115,16 +114,14 @@ def test_what_comes_back_has_the_same_figures_events_and_marks(
     assert events_of(again.recordings[-1])
 
 
-def test_orientations_for_opensim_come_back_with_the_ranges_of_the_joints(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_orientations_for_opensim_come_back_with_the_ranges_of_the_joints(visit: Visit, tmp_path: Path) -> None:
     """Orientations alone, whose rates are derived: within a degree."""
     session, analysis = visit
     export_from_folder(session, analysis, [Format.STO], tmp_path, is_identified=True)
     written = {path.parent.name: path for path in tmp_path.rglob("*.sto")}
     assert set(written) == {one.folder for one in session.recordings}
     back = imported(session, lambda one: [written[one.folder]], "opensim", is_one_receiver=False)
-    again = analyse(back)
+    again = analysis_of(back)
     assert again.is_simulated
     walk, known = again.recordings[-1], analysis.recordings[-1]
     for joint in LEG_JOINTS:
@@ -134,7 +131,7 @@ def test_orientations_for_opensim_come_back_with_the_ranges_of_the_joints(
         assert abs(found - was) < 1.0
 
 
-def test_figures_of_another_walk_differ(visit: tuple[Session, Analysis]) -> None:
+def test_figures_of_another_walk_differ(visit: Visit) -> None:
     """Else the comparison above could not fail."""
     session, analysis = visit
     walk = session.recordings[-1]
@@ -143,4 +140,4 @@ def test_figures_of_another_walk_differ(visit: tuple[Session, Analysis]) -> None
         for site, block in walk.imu.items()
     }
     other = replace(session, recordings=(*session.recordings[:-1], replace(walk, imu=slower)))
-    assert figures(other, analyse(other)) != figures(session, analysis)
+    assert figures(other, analysis_of(other)) != figures(session, analysis)

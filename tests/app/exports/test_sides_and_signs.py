@@ -4,7 +4,6 @@ Names and codes are written out here, never taken from the code that writes them
 are the simulated patient's own.
 """
 
-import csv
 import json
 from itertools import pairwise
 from pathlib import Path
@@ -16,12 +15,10 @@ import openpyxl
 import pytest
 
 from app.exports.exports import Format, export_from_folder
-from app.exports.result_folder import write_results
 from core.body import LEG_JOINTS, Joint, Side
-from core.results import Analysis
 from core.samples import FloatArray
-from core.session import Session
-from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings
+from devices.simulation.walker import RecordingTruth, Standing, Walk, WalkerSettings
+from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, simulation_of
 
 MOT = {
@@ -58,21 +55,6 @@ UCUM = {
 }
 
 
-@pytest.fixture(scope="module")
-def truth() -> RecordingTruth:
-    """What the walk of the fixture `visit` was made of."""
-    settings = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
-    return simulation_of(settings).truth.recordings["walk 1"]
-
-
-@pytest.fixture(scope="module")
-def exported(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("exported")
-    export_from_folder(*visit, list(Format), folder, is_identified=True)
-    write_results(*visit, folder)
-    return folder
-
-
 def walk_folder(exported: Path) -> Path:
     (motion,) = exported.glob("walk*/angles.mot")
     return motion.parent
@@ -96,8 +78,7 @@ def check_columns(truth: RecordingTruth, time_s: FloatArray, columns: dict[str, 
 
 
 def test_angles_csv_names_each_joint(exported: Path, truth: RecordingTruth) -> None:
-    with (walk_folder(exported) / "angles.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows(walk_folder(exported) / "angles.csv")
     columns = {name: np.array([float(row[name]) for row in rows]) for name in CSV}
     check_columns(truth, np.array([float(row["time_s"]) for row in rows]), columns, CSV)
 

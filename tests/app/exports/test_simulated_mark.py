@@ -9,9 +9,7 @@ from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
 from app.importing.import_drafts import drafts_of, session_of
 from app.reports.agreement.study import study_of
-from core.analysis import analyse
 from core.body import Site
-from core.results import Analysis
 from core.session import Recording, RecordingKind, Session
 from devices.files.answers import details_of, value_from
 from devices.files.formats import format_of, read_trial
@@ -21,18 +19,21 @@ from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.trial import ImportedTrial
-from devices.simulation.walker import Walk, WalkerSettings, simulate
+from devices.simulation.walker import Walk, WalkerSettings
+from tests.app.exports.conftest import Visit
+from tests.simulated import analysis_of
+from tests.simulated import session_of as simulated
 
 SITES = (Site.LEFT_THIGH, Site.LEFT_SHANK)
 
 
 @pytest.fixture(scope="module")
-def walked() -> tuple[Session, Analysis]:
-    session = simulate(WalkerSettings(seed=2, recordings=(Walk(strides=3),), sites=SITES)).session
-    return session, analyse(session)
+def walked() -> Visit:
+    session = simulated(WalkerSettings(seed=2, recordings=(Walk(strides=3),), sites=SITES))
+    return session, analysis_of(session)
 
 
-def everything_written(walked: tuple[Session, Analysis], is_simulated: bool, folder: Path) -> Path:
+def everything_written(walked: Visit, is_simulated: bool, folder: Path) -> Path:
     """All formats of exports, the results of an analysis, and the session folder."""
     session, analysis = replace(walked[0], is_simulated=is_simulated), replace(walked[1], is_simulated=is_simulated)
     export_from_folder(session, analysis, list(Format), folder, is_identified=True)
@@ -56,7 +57,7 @@ def read_back(folder: Path) -> dict[str, ImportedTrial]:
 
 @pytest.mark.parametrize("is_simulated", [True, False])
 def test_every_file_that_can_be_read_again_states_who_was_measured(
-    walked: tuple[Session, Analysis], is_simulated: bool, tmp_path: Path
+    walked: Visit, is_simulated: bool, tmp_path: Path
 ) -> None:
     found = read_back(everything_written(walked, is_simulated, tmp_path))
     assert {trial.format for trial in found.values()} == {"bids-motion", "csv"}
@@ -72,7 +73,7 @@ def test_every_file_that_can_be_read_again_states_who_was_measured(
 
 @pytest.mark.parametrize("is_simulated", [True, False])
 def test_a_reference_that_was_simulated_marks_what_is_compared_with_it(
-    visit: tuple[Session, Analysis], is_simulated: bool, tmp_path: Path
+    visit: Visit, is_simulated: bool, tmp_path: Path
 ) -> None:
     """`agree` with our own C3D or OpenSim export of a simulated patient, of somebody who was measured."""
     session, analysis = visit
@@ -88,7 +89,7 @@ def test_a_reference_that_was_simulated_marks_what_is_compared_with_it(
     assert study_of(replace(analysis, is_simulated=True), [(name, reference)]).is_simulated
 
 
-def test_what_was_simulated_joins_no_session_of_a_patient(walked: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_what_was_simulated_joins_no_session_of_a_patient(walked: Visit, tmp_path: Path) -> None:
     found = read_back(everything_written(walked, True, tmp_path))
     trial = next(trial for trial in found.values() if trial.format == "bids-motion")
     imported = place_sensors(trial, list(zip(SITES, trial.sensors, strict=True)), "walk 2")

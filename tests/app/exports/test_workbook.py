@@ -1,6 +1,5 @@
 """Tests that the workbook can be worked with: numbers alone in their columns, filters, formats, and pages of paper."""
 
-import csv
 import re
 import shutil
 import subprocess
@@ -14,9 +13,10 @@ import pytest
 
 from app.exports.result_folder import write_results
 from app.exports.spreadsheet import workbook, write_spreadsheet
-from core.results import Analysis
-from core.session import Patient, RecordingKind, Session
+from core.session import Patient, RecordingKind
 from core.verdicts.model import GateReason, JointVerdicts, Verdict, assess
+from tests.app.exports.conftest import Visit
+from tests.app.exports.written_tables import csv_rows
 
 NUMBER = (int, float)
 NUMERIC = re.compile(
@@ -26,7 +26,7 @@ CODE = "P-7 & Co"
 
 
 @pytest.fixture(scope="module")
-def doubtful(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+def doubtful(visit: Visit) -> Visit:
     """A visit whose joints are in doubt, with a condition called as a number, and one called as a formula."""
     session, analysis = visit
     no_zero, no_axis = (
@@ -51,7 +51,7 @@ def doubtful(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
 
 
 @pytest.fixture(scope="module")
-def path(doubtful: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def path(doubtful: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("xlsx") / "results.xlsx"
     write_spreadsheet(*doubtful, path)
     return path
@@ -116,9 +116,7 @@ def test_every_sheet_is_printed_across_with_its_heading_and_whose_it_is(path: Pa
         assert "<oddFooter>&amp;LResearch use. Not a medical device.&amp;R&amp;P / &amp;N</oddFooter>" in text
 
 
-def test_who_was_measured_has_no_mark_and_letter_paper_is_letter(
-    doubtful: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_who_was_measured_has_no_mark_and_letter_paper_is_letter(doubtful: Visit, tmp_path: Path) -> None:
     session, analysis = doubtful
     measured = replace(session, is_simulated=False), replace(analysis, is_simulated=False)
     (tmp_path / "letter.xlsx").write_bytes(workbook(*measured, paper="letter"))
@@ -127,9 +125,7 @@ def test_who_was_measured_has_no_mark_and_letter_paper_is_letter(
     assert b"SIMULATED" not in zipfile.ZipFile(tmp_path / "letter.xlsx").read("xl/worksheets/sheet1.xml")
 
 
-def test_a_sheet_without_rows_is_left_out_where_its_table_is_a_file_all_the_same(
-    visit: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_a_sheet_without_rows_is_left_out_where_its_table_is_a_file_all_the_same(visit: Visit, tmp_path: Path) -> None:
     """A session of free motion alone: no strides, no conditions, no events."""
     session, analysis = visit
     free = tuple(one for one in analysis.recordings if one.kind is RecordingKind.FREE_MOTION)
@@ -142,9 +138,7 @@ def test_a_sheet_without_rows_is_left_out_where_its_table_is_a_file_all_the_same
         assert len(file.read_text(encoding="utf-8").splitlines()) == 1  # its heading
 
 
-def test_calamine_reads_the_numbers_of_every_csv_file(
-    path: Path, doubtful: tuple[Session, Analysis], tmp_path: Path
-) -> None:
+def test_calamine_reads_the_numbers_of_every_csv_file(path: Path, doubtful: Visit, tmp_path: Path) -> None:
     calamine = pytest.importorskip("python_calamine", reason="python-calamine is not installed")
     write_results(*doubtful, tmp_path)
     read = calamine.CalamineWorkbook.from_path(str(path))
@@ -154,8 +148,7 @@ def test_calamine_reads_the_numbers_of_every_csv_file(
         header, *rows = read.get_sheet_by_name(title).to_python()
         for recording in doubtful[1].recordings:
             found = [dict(zip(header, row, strict=True)) for row in rows if row[0] == recording.name]
-            with (tmp_path / recording.folder / f"{title.lower()}.csv").open(encoding="utf-8", newline="") as file:
-                written = list(csv.DictReader(file))
+            written = csv_rows(tmp_path / recording.folder / f"{title.lower()}.csv")
             assert len(found) == len(written)
             for one, other in zip(found, written, strict=True):
                 for name, text in other.items():
