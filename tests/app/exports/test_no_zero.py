@@ -12,10 +12,11 @@ import numpy as np
 import openpyxl
 import pytest
 
-from app.exports.exports import Format, export_from_folder
+from app.exports.exports import export_from_folder
 from app.exports.result_folder import write_results
 from core.body import LEG_JOINTS, Joint
 from devices.simulation.walker import FreeMotion, SimulatedSession, Walk, WalkerSettings
+from tests.app.exports.conftest import OF_FIGURES
 from tests.app.exports.written_tables import csv_rows
 from tests.simulated import analysis_of, simulation_of
 
@@ -30,7 +31,7 @@ def simulated() -> SimulatedSession:
 def folder(simulated: SimulatedSession, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("no_zero")
     analysis = analysis_of(simulated.session)
-    lines = export_from_folder(simulated.session, analysis, list(Format), place, is_identified=True)
+    lines = export_from_folder(simulated.session, analysis, OF_FIGURES, place, is_identified=True)
     (place / "lines").write_text("\n".join(lines), encoding="utf-8")
     write_results(simulated.session, analysis, place)
     return place

@@ -110,13 +110,10 @@ def test_how_the_legs_have_one_time_is_stated(hips: Facts, snapshot: SnapshotAss
     assert {name: clocks_in_words(one) for name, one in found.items()} == snapshot
 
 
-def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_reported(hips: Facts) -> None:
-    table = rows(hips_table(with_joints(hips, Joint.LEFT_HIP, margin=1.21)))
-    assert table["Adjacent segments, clarity"][0] == "1.21"
-    assert table["Adjacent segments, clarity"][2] == "at least 1.5"
-    assert table["ROM, shape"][:2] == ["Not reported", "Good"]
-    assert table["Abduction"][:2] == ["Not reported", "Good"]
-    assert table["Pelvis–thigh heading, ± 1 SD"][2] == "at most 6°, for abduction only"
+def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_reported(
+    hips: Facts, snapshot: SnapshotAssertion
+) -> None:
+    assert rows(hips_table(with_joints(hips, Joint.LEFT_HIP, margin=1.21))) == snapshot
 
 
 def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable(hips: Facts) -> None:
