@@ -8,11 +8,9 @@ import pytest
 
 from devices.drivers.csv_serial import DRIVER, MOST_LINE, VERSION, Columns, CsvFramer, CsvSerial
 from devices.emulators.transports import Emulation, PseudoTerminal
-from devices.live import SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Decoder
 from devices.transport.ports import PortInfo, SerialPort
-from tests.devices.scripted import ScriptedChannel
 
 COLUMNS = Columns(0, (1, 2, 3), (4, 5, 6), count=7)
 
@@ -88,12 +86,6 @@ def test_columns_that_cannot_be_are_refused(wrong: dict[str, object]) -> None:
     reported: dict[str, object] = {"time": 0, "rate": (1, 2, 3), "force": (4, 5, 6)}
     with pytest.raises(ValueError, match=r"columns|unit|expected|signs"):
         Columns(**{**reported, **wrong})  # type: ignore[arg-type]  # wrong on purpose
-
-
-def test_another_line_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("devices.drivers.csv_serial.STATES_S", 0.05)
-    with pytest.raises(SourceRefusedError, match="in the expected format"):
-        ByteSource(CsvSerial(COLUMNS), ScriptedChannel([b"hello\nhello\n"])).open()
 
 
 class ScriptedLines:

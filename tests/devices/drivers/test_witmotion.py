@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from devices.drivers.witmotion import CLOCK, DRIVER, FORCE, RATE, TIME, VERSION, WitFramer, WitMotion, frame, writing
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.witmotion import SWITCHED_ON, WitVoice
-from devices.live import SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Decoder
 from devices.transport.ports import PortInfo, SerialPort
@@ -113,15 +112,6 @@ def test_it_is_set_up_and_known_by_its_number() -> None:
     assert not source.identify("EMULATED0042")
     with pytest.raises(ValueError, match="rate_hz is 60"):
         WitMotion(rate_hz=60)
-
-
-def test_who_sends_no_time_or_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("devices.drivers.witmotion.ANSWERS_S", 0.01)
-    monkeypatch.setattr("devices.drivers.witmotion.STATES_S", 0.05)
-    with pytest.raises(SourceRefusedError, match="sends no time"):
-        ByteSource(WitMotion(), ScriptedChannel(bursts(200, content=0b1110))).open()
-    with pytest.raises(SourceRefusedError, match="No signal from a WitMotion sensor at"):
-        ByteSource(WitMotion(), ScriptedChannel([b"hello"])).open()
 
 
 @pytest.mark.endurance
