@@ -217,7 +217,7 @@ def test_a_piece_of_another_shape_is_no_answer(broken: VideoPiece) -> None:
 
 @pytest.mark.parametrize("name", videos())
 def test_a_spoilt_video_is_read_or_refused(name: str, shared_reader: LimitedReader) -> None:
-    found = fuzz(videos()[name], 8, 3, shared_reader)
+    found = fuzz(videos()[name], 5, 3, shared_reader)  # `python -m tests.safety.video_fuzz` reads hundreds
     assert found.faults == []
     assert found.count["read"] > 0
     assert found.count["refused"] > 0
