@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ResultPage
@@ -48,12 +47,13 @@ def without_pelvis() -> Analysis:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
-    page = ResultPage()
-    qtbot.addWidget(page)
+def page(qtbot: QtBot, shared_page: ResultPage) -> ResultPage:
+    page = shared_page
     page.resize(1280, 700)
     page.set_room(*WIDE)
+    page.leave_behind()
     show(page, hip_analysis())
+    page.view.choose(ANSWER)
     with qtbot.waitActive(page):
         page.show()
         page.activateWindow()
@@ -103,9 +103,12 @@ def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("room", [WIDE, WIZARD, (1150.0, 640.0)])
-def test_no_view_is_higher_than_its_window(page: ResultPage, room: tuple[float, float]) -> None:
+def test_no_view_is_higher_than_its_window(result_page: ResultPage, room: tuple[float, float]) -> None:
+    page = result_page
+    page.resize(1280, 700)
     page.set_room(*room)
     show(page, hip_analysis())
+    page.show()
 
     def height() -> float:
         settle()

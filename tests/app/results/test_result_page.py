@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QLineEdit
+from PySide6.QtWidgets import QLineEdit
 from pytestqt.qtbot import QtBot
 
 from app.results.cycle_page import NO_SIDE, NO_SPEED
@@ -50,9 +50,20 @@ def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> No
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
-    page = ResultPage()
-    qtbot.addWidget(page)
+def page(qtbot: QtBot, shared_page: ResultPage, analysis: Analysis) -> ResultPage:
+    shared_page.leave_behind()
+    opened(shared_page, qtbot, analysis)
+    shared_page.view.choose(ANSWER)
+    return shared_page
+
+
+@pytest.fixture
+def own_page(qtbot: QtBot, result_page: ResultPage, analysis: Analysis) -> ResultPage:
+    """A page whose legs are chosen: from then on no room changes that."""
+    return opened(result_page, qtbot, analysis)
+
+
+def opened(page: ResultPage, qtbot: QtBot, analysis: Analysis) -> ResultPage:
     page.resize(1280, 700)
     page.set_room(*WIDE)
     show(page, analysis)
@@ -144,7 +155,8 @@ def test_where_room_is_short_curves_and_table_are_shown_one_at_a_time_and_nothin
     assert page.differs.isVisible()
 
 
-def test_where_room_is_short_the_legs_take_the_ankles_place(page: ResultPage) -> None:
+def test_where_room_is_short_the_legs_take_the_ankles_place(own_page: ResultPage) -> None:
+    page = own_page
     page.set_room(*COMPACT)
     assert not page.legs.isVisible()
     assert page.cycles.charts.ankle.isVisible()
@@ -203,6 +215,7 @@ def test_a_letter_typed_into_a_field_stays_there(qtbot: QtBot, page: ResultPage)
     QTest.keyClick(field, Qt.Key.Key_F)
     assert field.text() == "f"
     assert not page.all_figures.isChecked()
+    field.deleteLater()
 
 
 def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analysis: Analysis) -> None:
@@ -364,8 +377,9 @@ def test_the_headline_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Re
 
 @pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768
 def test_no_view_scrolls_in_the_windows_of_laptops(
-    page: ResultPage, analysis: Analysis, room: tuple[float, float]
+    own_page: ResultPage, analysis: Analysis, room: tuple[float, float]
 ) -> None:
+    page = own_page
     page.set_room(*room)
     show(page, analysis)
 
@@ -415,7 +429,8 @@ def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysi
     assert "more than one axis" not in stated
 
 
-def test_legs_stand_beside_the_curves_each_at_the_cursors_percent_of_its_own_cycle(page: ResultPage) -> None:
+def test_legs_stand_beside_the_curves_each_at_the_cursors_percent_of_its_own_cycle(own_page: ResultPage) -> None:
+    page = own_page
     page.legs.show_percent(72.0)
     knee = page.cycles.charts.knee.chart
     assert knee.readings == dict.fromkeys(Side, 72.0)
@@ -453,7 +468,8 @@ def test_the_views_are_received_before_what_they_show_in_every_room(page: Result
             assert received.index("View") == min(k for k, name in enumerate(received) if name)
 
 
-def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(page: ResultPage) -> None:
+def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(own_page: ResultPage) -> None:
+    page = own_page
     page.show_legs.click()
     folds = {page.show_legs: page.legs, page.all_figures: page.cycles.peaks.table}
     folds[page.quality.engineering] = page.quality.facts
@@ -470,11 +486,9 @@ def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(
         fold.click()
 
 
-def test_legs_are_drawn_where_room_came_after_the_walk(qtbot: QtBot, analysis: Analysis) -> None:
+def test_legs_are_drawn_where_room_came_after_the_walk(result_page: ResultPage, analysis: Analysis) -> None:
     """The wizard fills the page before it has a size."""
-    page = ResultPage()
-    qtbot.addWidget(page)
-    page.set_room(0.0, 0.0)
-    show(page, analysis)
-    page.set_room(*WIDE)
-    assert page.legs.picture.legs is not None
+    result_page.set_room(0.0, 0.0)
+    show(result_page, analysis)
+    result_page.set_room(*WIDE)
+    assert result_page.legs.picture.legs is not None

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ResultPage
-from app.results.tools_row import ANSWER, TABLE
+from app.results.tools_row import ANSWER, CURVES, TABLE
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
@@ -38,7 +38,6 @@ ROOMS = {
     "1920 x 1080": (1704, 952, 1.0),
     "1920 x 1200 at 200 %": (896, 480, 2.0),
 }
-Place = Callable[[str, str], ResultPage]
 DAYS = (datetime.date(2025, 7, 1), datetime.date(2025, 9, 23), datetime.date(2026, 11, 23))
 
 
@@ -109,75 +108,82 @@ def language(request: pytest.FixtureRequest) -> Iterator[str]:
     use_language("en")
 
 
-@pytest.fixture
-def holders() -> list[QWidget]:
-    """What pages are in, for as long as the test."""
-    return []
+@pytest.fixture(params=ROOMS)
+def room(request: pytest.FixtureRequest) -> str:
+    set_scale(ROOMS[request.param][2])
+    return str(request.param)
 
 
 @pytest.fixture
-def placed(qtbot: QtBot, holders: list[QWidget]) -> Place:
-    """The page of a case, exactly as large as its room."""
-
-    def place(case: str, room: str) -> ResultPage:
-        holder = QWidget()
-        holders.append(holder)
-        qtbot.addWidget(holder)
-        return in_room(holder, case, room)
-
-    return place
+def holder(qtbot: QtBot) -> QWidget:
+    """What a page is in, for as long as the test."""
+    found = QWidget()
+    qtbot.addWidget(found)
+    return found
 
 
-def in_room(holder: QWidget, case: str, room: str) -> ResultPage:
-    width, height, scale = ROOMS[room]
-    set_scale(scale)
+def page_in(holder: QWidget, room: str) -> ResultPage:
+    """An empty page in its room."""
+    width, height, _ = ROOMS[room]
+    page = ResultPage()
+    page.setParent(holder)
+    page.set_room(width, height)
+    holder.resize(px(width), px(height))
+    holder.show()
+    return page
+
+
+def show(page: ResultPage, case: str) -> None:
+    """Show a case on a page that is exactly as large as its room."""
     visit, walked = CASES[case]()
     course = tuple(
         CourseVisit(UUID(int=number), day, course_of(one.analysis, one.recordings))
         for number, (day, one) in enumerate(zip(DAYS, walked, strict=False))
     )
-    page = ResultPage()
-    page.setParent(holder)
     page.set_has_visits(bool(walked))
-    page.set_room(width, height)
     page.show_visit(visit, course=course)
     if walked:
         page.show_visits(visits_by_condition(walked), conditions_in_words(walked))
-    holder.resize(px(width), px(height))
-    holder.show()
     page.show()
     settle()
+    holder = page.parentWidget()
+    assert holder is not None
     page.resize(holder.size())
     settle()
-    return page
 
 
-def assert_fits(page: ResultPage) -> None:
+def assert_fits(page: ResultPage, case: str = "") -> None:
     holder = page.parentWidget()
     assert holder is not None
     room = holder.size()
-    assert page.minimumSizeHint().width() <= room.width()
-    assert page.minimumSizeHint().height() <= room.height()
-    assert page.size() == room
-    assert words_cut(page) == []
+    assert page.minimumSizeHint().width() <= room.width(), case
+    assert page.minimumSizeHint().height() <= room.height(), case
+    assert page.size() == room, case
+    assert words_cut(page) == [], case
 
 
-@pytest.mark.parametrize("room", ROOMS)
-@pytest.mark.parametrize("case", CASES)
-def test_nothing_of_a_summary_is_cut_or_scrolls(placed: Place, language: str, case: str, room: str) -> None:
-    page = placed(case, room)
-    assert page.view.choice == ANSWER
-    assert_fits(page)
-    if page.part.isVisible():
-        page.part.choose(TABLE)
-        settle()
-        assert_fits(page)
+@pytest.mark.usefixtures("language")
+def test_nothing_of_a_summary_is_cut_or_scrolls(holder: QWidget, room: str) -> None:
+    page = page_in(holder, room)
+    for case in CASES:
+        show(page, case)
+        assert page.view.choice == ANSWER
+        assert_fits(page, case)
+        if page.part.isVisible():
+            page.part.choose(TABLE)
+            settle()
+            assert_fits(page, case)
+            page.part.choose(CURVES)
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_the_same_parts_are_there_in_the_same_order(placed: Place, room: str) -> None:
+def test_the_same_parts_are_there_in_the_order_of_reading_and_of_the_keyboard(holder: QWidget, room: str) -> None:
     """Where room is short curves and table take turns, and the legs are asked for; none is left out."""
-    page = placed("return visit", room)
+    page = page_in(holder, room)
+    show(page, "return visit")
+    focused = [widget for widget in page.tab_order if widget.isVisible() and widget.isEnabled()]
+    rows = [widget.mapTo(page, QPoint(0, 0)).y() for widget in focused]
+    assert rows == sorted(rows, key=lambda y: y // px(30))
+    assert page.legs in focused or page.part.isVisible()
     charts = page.cycles.charts
     always = [page.view, page.headline, page.tiles, page.door, page.all_figures]
     assert all(part.isVisible() for part in always)
@@ -199,8 +205,10 @@ def test_the_same_parts_are_there_in_the_same_order(placed: Place, room: str) ->
     assert page.differs.table.cells.rowCount() >= 3
 
 
-def test_legs_asked_for_where_room_is_short_fit_too(placed: Place, language: str) -> None:
-    page = placed("not reported", "960 x 600")
+@pytest.mark.usefixtures("language")
+def test_legs_asked_for_where_room_is_short_fit_too(holder: QWidget) -> None:
+    page = page_in(holder, "960 x 600")
+    show(page, "not reported")
     page.show_legs.click()
     settle()
     assert page.legs.isVisible()
@@ -210,7 +218,7 @@ def test_legs_asked_for_where_room_is_short_fit_too(placed: Place, language: str
 @pytest.mark.usefixtures("language")
 @pytest.mark.parametrize("language", ["de"], indirect=True)
 def test_the_name_of_the_thin_line_goes_where_the_page_becomes_too_narrow_for_it(qtbot: QtBot) -> None:
-    page = ResultPage()
+    page = ResultPage()  # in this language
     qtbot.addWidget(page)
     page.show_visit(two_walks()[0])
     page.show()
@@ -223,10 +231,9 @@ def test_the_name_of_the_thin_line_goes_where_the_page_becomes_too_narrow_for_it
         assert page.minimumSizeHint().width() <= px(width)
 
 
-def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot) -> None:
+def test_a_session_without_walks_shows_its_recording_whole(result_page: ResultPage) -> None:
     recordings = tuple(one for one in analysis().recordings if one.name != "walk 1")
-    page = ResultPage()
-    qtbot.addWidget(page)
+    page = result_page
     page.set_room(1064, 672)
     page.show_visit(AnalysedVisit(session(), replace(analysis(), recordings=recordings)))
     page.show()
@@ -238,13 +245,3 @@ def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot) -> None
     assert page.recording is None
     shown = [page.headline.isVisible(), page.cycles.isVisible(), page.legs.isVisible(), page.recordings.isVisible()]
     assert shown == [False] * 4
-
-
-@pytest.mark.parametrize("room", ROOMS)
-def test_the_keyboard_goes_through_the_summary_in_the_order_of_reading(placed: Place, room: str) -> None:
-    page = placed("return visit", room)
-    shown = [widget for widget in page.tab_order if widget.isVisible() and widget.isEnabled()]
-    places = [widget.mapTo(page, QPoint(0, 0)) for widget in shown]
-    rows = [one.y() for one in places]
-    assert rows == sorted(rows, key=lambda y: y // px(30))
-    assert page.legs in shown or page.part.isVisible()

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ResultPage
 from app.results.thin_line import ThinLine
-from app.results.tools_row import STRIDES
+from app.results.tools_row import ANSWER, STRIDES
 from app.summary.beside import beside_visit, beside_walk, change_on_curve, walks_alone
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
@@ -56,14 +55,14 @@ def analysis(session: Session) -> Analysis:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
-    page = ResultPage()
-    qtbot.addWidget(page)
+def page(qtbot: QtBot, shared_page: ResultPage, analysis: Analysis, session: Session) -> ResultPage:
+    page = shared_page
     page.set_room(1064, 672)
     page.set_has_visits(True)
     page.show_visit(AnalysedVisit(session, analysis))
     page.resize(1064, 672)
     show(page, "walk 1")
+    page.view.choose(ANSWER)
     with qtbot.waitActive(page):
         page.show()
         page.activateWindow()

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from app.plots.moment_chart import MomentChart
 from app.results.beside_stride import StridePlace, place_at, time_at, used_strides
 from app.results.result_page import ResultPage
 from app.results.shown_clips import ClipsOfVisit
-from app.results.tools_row import COMPARE
+from app.results.tools_row import ANSWER, COMPARE
 from app.summary.request import AnalysedVisit
 from app.theme.current import px, set_scale
 from app.widgets.accessible_role import show_roles
@@ -58,20 +59,24 @@ def first() -> Clip:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
+def page(qtbot: QtBot, shared_page: ResultPage) -> Iterator[ResultPage]:
     """With the clip of the first walk in sight."""
-    page = ResultPage()
-    qtbot.addWidget(page)
+    page = shared_page
     page.set_room(1064, 672)
     page.resize(1064, 672)
     page.show_visit(visit())
     page.show_clips([first()])
     show(page, "walk 1")
+    page.view.choose(ANSWER)
+    page.show_video.setChecked(False)
     with qtbot.waitActive(page):
         page.show()
         page.activateWindow()
     QTest.keyClick(page, Qt.Key.Key_V)
-    return page
+    page.video.transport.choose(Side.LEFT, Moment.INITIAL_CONTACT)
+    page.video.move_to(5.0)
+    yield page
+    page.clear_clips()  # which stops it too
 
 
 def show(page: ResultPage, name: str) -> None:
@@ -95,11 +100,9 @@ def states(page: ResultPage) -> tuple[bool, bool, bool]:
     return page.video.is_playing, page.video.is_synchronising, page.video.player.is_caution
 
 
-def test_without_any_clip_nothing_is_offered(qtbot: QtBot) -> None:
-    page = ResultPage()
-    qtbot.addWidget(page)
+def test_without_any_clip_nothing_is_offered(page: ResultPage) -> None:
+    page.clear_clips()
     page.show_visit(visit())
-    page.show()
     assert not page.show_video.isVisible()
     page.show_clips([first()])
     assert page.show_video.isVisible()
@@ -206,21 +209,20 @@ def test_comma_and_full_stop_step_a_frame(page: ResultPage, qtbot: QtBot) -> Non
     qtbot.waitUntil(lambda: page.video.player.shown_frame == number - 1)
 
 
-@pytest.mark.parametrize("moment", Moment)
-@pytest.mark.parametrize("side", Side)
-def test_page_keys_step_to_the_moments_that_are_chosen(page: ResultPage, side: Side, moment: Moment) -> None:
-    times_s = moments_s(walk(), side, moment)
-    page.video.transport.choose(side, moment)
-    page.video.move_to(float(times_s[3]) + 0.01)
-    QTest.keyClick(page.video.player, Qt.Key.Key_PageUp)
-    assert page.video.cursor_s == pytest.approx(times_s[3])
-    QTest.keyClick(page.video.player, Qt.Key.Key_PageDown)
-    assert page.video.cursor_s == pytest.approx(times_s[4])
-    page.video.transport.earlier.click()
-    assert page.video.cursor_s == pytest.approx(times_s[3])
-    page.video.move_to(float(times_s[-1]))
-    QTest.keyClick(page.video.player, Qt.Key.Key_PageDown)
-    assert page.video.cursor_s == pytest.approx(times_s[-1])  # there is none beyond
+def test_page_keys_step_to_the_moments_that_are_chosen(page: ResultPage) -> None:
+    for side, moment in product(Side, Moment):
+        times_s = moments_s(walk(), side, moment)
+        page.video.transport.choose(side, moment)
+        page.video.move_to(float(times_s[3]) + 0.01)
+        QTest.keyClick(page.video.player, Qt.Key.Key_PageUp)
+        assert page.video.cursor_s == pytest.approx(times_s[3])
+        QTest.keyClick(page.video.player, Qt.Key.Key_PageDown)
+        assert page.video.cursor_s == pytest.approx(times_s[4])
+        page.video.transport.earlier.click()
+        assert page.video.cursor_s == pytest.approx(times_s[3])
+        page.video.move_to(float(times_s[-1]))
+        QTest.keyClick(page.video.player, Qt.Key.Key_PageDown)
+        assert page.video.cursor_s == pytest.approx(times_s[-1])  # there is none beyond
 
 
 def test_arrows_move_the_cursor_and_stay_within_the_walk(page: ResultPage) -> None:

@@ -1,6 +1,7 @@
 """A change of a prosthesis is stated with its direction in words, and what undoes it as it is to be done."""
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.editing.words import field_word, value_words
 from app.storage.edited_fields import recording_fields
@@ -33,21 +34,46 @@ B = AlignmentChange(
 )
 
 
-def test_a_list_states_each_thing_that_was_done() -> None:
-    assert change_lines(B) == [
-        ("Foot, anterior screw", "½ out, +2° plantar"),
-        ("Foot, shift", "4 mm posterior"),
-        ("Pylon, height", "+3 mm"),
-        ("Pylon", "new clamp"),
-    ]
-    assert change_lines(None) == []
+KNEE = ProsthesisPart.KNEE_UNIT
+TO_WALK_2 = PartChange(KNEE, program_before="Walk 1", program="Walk 2")
+TO_50 = PartChange(KNEE, setting="Swing flexion", setting_before=45.0, setting_value=50.0)
+PARTS = {
+    "an anterior screw out": PartChange(FRONT, angle_deg=-1.5),
+    "a foot turned": PartChange(ProsthesisPart.FOOT_ROTATION, angle_deg=-3.0),
+    "an outer screw": PartChange(ProsthesisPart.SOCKET_OUTER_SCREW, angle_deg=1.0),
+    "an inner screw": PartChange(ProsthesisPart.SOCKET_INNER_SCREW, shift_mm=-2.0),
+    "a knee has no direction": PartChange(KNEE, angle_deg=-1.0),
+    "a program": TO_WALK_2,
+    "a program that was not recorded": PartChange(KNEE, program="Walk 2"),
+    "a setting": TO_50,
+    "a setting below nought": PartChange(KNEE, setting="Stance", setting_before=0.5, setting_value=-2.5),
+    "a setting that was not recorded": PartChange(KNEE, setting="Stance", setting_value=0.0),
+    "settings of a foot are the foot's and no screw's": PartChange(
+        ProsthesisPart.FOOT, setting="Heel", setting_before=3.0, setting_value=4.0, shift_mm=2.0
+    ),
+}
 
 
-def test_a_line_states_it_in_a_row_and_since_when() -> None:
-    line = "Foot, anterior screw ½ turn out, +2° plantar; foot 4 mm posterior; pylon +3 mm; pylon: new clamp"
-    assert change_in_words(B) == line
-    assert since_in_words(B) == f"Changed from Alignment A: {line}"
-    assert (change_in_words(None), since_in_words(None)) == ("", "")
+def stated(change: AlignmentChange | None) -> dict[str, object]:
+    undone = undoing(net_of(change.parts)) if change is not None else ()
+    return {
+        "line by line": change_lines(change),
+        "in a row": change_in_words(change),
+        "since when": since_in_words(change),
+        "to undo": to_do_in_words(undone),
+    }
+
+
+def test_a_change_is_stated_with_its_directions_and_what_undoes_it(snapshot: SnapshotAssertion) -> None:
+    again = AlignmentChange("Alignment B", (PartChange(ProsthesisPart.PYLON, height_mm=-3.0),), "Alignment A")
+    changes = {
+        "several": B,
+        "none": None,
+        "a return": again,
+        "a return, nothing was done": AlignmentChange("Alignment B", (), "Alignment A"),
+    }
+    changes |= {case: AlignmentChange("A", (part,)) for case, part in PARTS.items()}
+    assert {case: stated(change) for case, change in changes.items()} == snapshot
 
 
 def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
@@ -55,61 +81,6 @@ def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
     assert back is not None
     stated = "Foot, anterior screw ½ turn in; foot 4 mm anterior; pylon \N{MINUS SIGN}3 mm; pylon: undo: new clamp"
     assert to_do_in_words(back) == stated
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (PartChange(FRONT, angle_deg=-1.5), "+1.5° dorsal"),
-        (PartChange(ProsthesisPart.FOOT_ROTATION, angle_deg=-3.0), "+3° toe-in"),
-        (PartChange(ProsthesisPart.SOCKET_OUTER_SCREW, angle_deg=1.0), "+1° abduction"),
-        (PartChange(ProsthesisPart.SOCKET_INNER_SCREW, shift_mm=-2.0), "2 mm medial"),
-        (PartChange(ProsthesisPart.KNEE_UNIT, angle_deg=-1.0), "\N{MINUS SIGN}1°"),
-    ],
-)
-def test_each_part_has_directions_of_its_own(change: PartChange, words: str) -> None:
-    ((_, stated),) = change_lines(AlignmentChange("", (change,)))
-    assert stated == words
-
-
-KNEE = ProsthesisPart.KNEE_UNIT
-TO_WALK_2 = PartChange(KNEE, program_before="Walk 1", program="Walk 2")
-TO_50 = PartChange(KNEE, setting="Swing flexion", setting_before=45.0, setting_value=50.0)
-
-
-@pytest.mark.parametrize(
-    ("change", "words", "to_undo"),
-    [
-        (TO_WALK_2, "program Walk 2, was Walk 1", "set program Walk 1 again"),
-        (TO_50, "Swing flexion 50, was 45", "set Swing flexion to 45 again"),
-        (
-            PartChange(KNEE, program="Walk 2"),
-            "program Walk 2",
-            "set program back from Walk 2; what it was is not recorded",
-        ),
-        (
-            PartChange(KNEE, setting="Stance", setting_before=0.5, setting_value=-2.5),
-            "Stance −2.5, was 0.5",
-            "set Stance to 0.5 again",
-        ),
-        (
-            PartChange(KNEE, setting="Stance", setting_value=0.0),
-            "Stance 0",
-            "set Stance back from 0; what it was is not recorded",
-        ),
-    ],
-)
-def test_a_program_and_a_setting_are_stated_with_what_they_were_and_are_set_again(
-    change: PartChange, words: str, to_undo: str
-) -> None:
-    assert change_lines(AlignmentChange("A", (change,))) == [("Knee unit", words)]
-    assert change_in_words([change]) == f"Knee unit: {words}"
-    assert to_do_in_words(undoing(net_of([change]))) == f"Knee unit: {to_undo}"
-
-
-def test_settings_of_a_foot_are_the_foots_and_no_screws() -> None:
-    foot = PartChange(ProsthesisPart.FOOT, setting="Heel", setting_before=3.0, setting_value=4.0, shift_mm=2.0)
-    assert change_in_words([foot]) == "Foot 2 mm posterior; foot: Heel 4, was 3"
 
 
 @pytest.mark.parametrize(
@@ -128,12 +99,6 @@ def test_what_leads_back_can_be_entered_and_comes_to_the_same(net: tuple[NetChan
 def test_what_is_undone_in_words_is_entered_in_words() -> None:
     (entered,) = as_entered(undoing(net_of([PartChange(KNEE, text="new clamp")])))
     assert entered == PartChange(KNEE, text="undo: new clamp")
-
-
-def test_a_return_is_stated_as_one() -> None:
-    again = AlignmentChange("Alignment B", (PartChange(ProsthesisPart.PYLON, height_mm=-3.0),), "Alignment A")
-    assert since_in_words(again) == "Back to Alignment A: Pylon −3 mm"
-    assert since_in_words(AlignmentChange("Alignment B", (), "Alignment A")) == "Back to Alignment A"
 
 
 def test_turns_are_eighths() -> None:

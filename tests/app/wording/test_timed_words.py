@@ -5,6 +5,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.wording.timed_tests import (
     course_sentence,
@@ -40,55 +41,62 @@ TWO = replace(
 )
 
 
-def test_the_result_is_what_the_test_is_made_for() -> None:
-    assert result_sentence(TEN) == "10-metre walk: 1.12 m/s, 8.9 s."
-    assert result_sentence(TWO) == "2-minute walk: 132 m, 1.10 m/s."
-    chair = replace(TEN, protocol=TimedProtocol.SIT_TO_STAND, distance_m=math.nan)
-    assert result_sentence(chair) == "5 × sit to stand: 8.9 s."
-    assert result_sentence(replace(TWO, distance_m=math.nan)) == "2-minute walk: distance not measured."
-    assert result_sentence(replace(TEN, end_s=math.nan)) == "10-metre walk: time not measured."
+UP = replace(
+    TEN, protocol=TimedProtocol.UP_AND_GO, course_m=3.0, course_found_m=6.6, sensor_distance_m=13.34, distance_m=13.34
+)
 
 
-def test_what_is_missing_is_stated_with_its_reason_and_nothing_else_is() -> None:
-    assert why_sentence(TEN) == ""
-    silent = replace(
-        TWO, distance_m=math.nan, missing=(NotMeasured.SILENT,), silences=(Silence(Site.LEFT_FOOT, 50.0, 55.0),)
-    )
-    assert why_sentence(silent).startswith("Distance not reported: the L foot sensor had no signal ")
-    assert "from 50.0 to 55.0 s" in why_sentence(silent)
-    taped = replace(silent, protocol=TimedProtocol.TEN_METRES, distance_m=10.0, is_end_by_key=True)
-    assert why_sentence(taped).startswith("Sensor distance not reported: the L foot sensor had no signal ")
-    unfinished = replace(TEN, end_s=math.nan, missing=(NotMeasured.NOT_FINISHED,))
-    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test was finished."
+SILENT = replace(
+    TWO, distance_m=math.nan, missing=(NotMeasured.SILENT,), silences=(Silence(Site.LEFT_FOOT, 50.0, 55.0),)
+)
+KEYED = replace(TEN, is_end_by_key=True)
+TYPED = replace(TWO, distance_source=DistanceSource.TYPED, course_m=20.0, sensor_distance_m=131.6)
+STRIDES = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
+RISES = tuple(Rise(3.0 * k, 3.0 * k + lasts_s) for k, lasts_s in enumerate((1.1, 1.4, 1.2)))
+CHAIR = replace(TEN, protocol=TimedProtocol.SIT_TO_STAND, distance_m=math.nan)
+OF_UNKNOWN_SPEED = replace(TWO.thirds[2], speed_m_s=math.nan)
+TESTS = {
+    "10 metres": TEN,
+    "not finished": replace(TEN, end_s=math.nan, missing=(NotMeasured.NOT_FINISHED,)),
+    "10 metres have no thirds": replace(TEN, thirds=TWO.thirds),
+    "2 minutes": TWO,
+    "2 minutes, distance unknown": replace(TWO, distance_m=math.nan),
+    "2 minutes, a sensor was silent": SILENT,
+    "10 metres, a sensor was silent": replace(
+        SILENT, protocol=TimedProtocol.TEN_METRES, distance_m=10.0, is_end_by_key=True
+    ),
+    "one pause": replace(TWO, pauses_s=((10.0, 13.0),)),
+    "two pauses": replace(TWO, pauses_s=((10.0, 13.0), (20.0, 21.5))),
+    "without thirds": replace(TWO, thirds=()),
+    "a third of unknown speed": replace(TWO, thirds=(*TWO.thirds[:2], OF_UNKNOWN_SPEED)),
+    "laps entered": TYPED,
+    "laps entered, sensors without a distance": replace(TYPED, sensor_distance_m=math.nan),
+    **{f"tape 10 m, sensors {own_m} m": replace(KEYED, sensor_distance_m=own_m) for own_m in (10.3, 9.71, 10.31, 9.6)},
+    "tape, sensors without a distance": replace(KEYED, sensor_distance_m=math.nan),
+    "no tape is the end of 2 minutes": replace(TWO, is_end_by_key=True),
+    "stairs": replace(TEN, protocol=TimedProtocol.STAIRS, stairs=STRIDES),
+    "a chair": CHAIR,
+    "the slowest of several rises": replace(CHAIR, rises=RISES),
+    "of one rise there is no slowest": replace(CHAIR, rises=RISES[:1]),
+    "up and go": replace(UP, rises=RISES[:1]),
+    **{f"not valid: {reason}": replace(UP, not_valid=(reason,)) for reason in NotValid},
+    "no turn is graver than a longer course": replace(
+        UP, not_valid=(NotValid.COURSE_LONGER, NotValid.NO_TURN, NotValid.ELSEWHERE)
+    ),
+    "no rise is graver than a longer course": replace(UP, not_valid=(NotValid.COURSE_LONGER, NotValid.NO_RISE)),
+}
+SENTENCES = (
+    *(result_sentence, why_sentence, tape_sentence, pauses_sentence, course_sentence),
+    *(stairs_sentence, not_valid_sentence, remedy_sentence, source_sentence, slowest_sentence),
+)
+
+
+def test_each_sentence_is_stated_where_it_must_come_and_nowhere_else(snapshot: SnapshotAssertion) -> None:
+    stated = {
+        case: {of.__name__: sentence for of in SENTENCES if (sentence := of(test))} for case, test in TESTS.items()
+    }
+    assert stated == snapshot
     assert len({reason_words(one) for one in NotMeasured}) == len(NotMeasured)
-
-
-@pytest.mark.parametrize(("own_m", "is_allowed"), [(10.3, True), (9.71, True), (10.31, False), (9.6, False)])
-def test_the_tape_is_compared_where_a_key_reported_where_it_is(own_m: float, is_allowed: bool) -> None:
-    keyed = replace(TEN, is_end_by_key=True, sensor_distance_m=own_m)
-    assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m compared with the tape (10.00 m)" in tape_sentence(keyed)
-    assert ("Check the position of the tape" in tape_sentence(keyed)) is not is_allowed
-    assert tape_sentence(replace(keyed, is_end_by_key=False)) == ""
-    assert tape_sentence(replace(keyed, sensor_distance_m=math.nan)) == ""
-    assert tape_sentence(replace(TWO, is_end_by_key=True)) == ""  # no tape is its end
-
-
-def test_pauses_and_the_course_are_reported_where_there_are_any() -> None:
-    assert pauses_sentence(TWO) == ""
-    assert pauses_sentence(replace(TWO, pauses_s=((10.0, 13.0),))) == "1 pause, 3.0 s."
-    assert pauses_sentence(replace(TWO, pauses_s=((10.0, 13.0), (20.0, 21.5)))) == "2 pauses, 4.5 s in total."
-    assert course_sentence(TWO) == "Speed: 1.20 m/s in the first third, 1.01 m/s in the last third."
-    assert course_sentence(replace(TWO, thirds=())) == ""
-    unknown = replace(TWO.thirds[2], speed_m_s=math.nan)
-    assert course_sentence(replace(TWO, thirds=(*TWO.thirds[:2], unknown))) == ""
-    assert course_sentence(replace(TEN, thirds=TWO.thirds)) == ""
-
-
-def test_strides_on_stairs_are_reported_apart_where_there_are_some() -> None:
-    assert stairs_sentence(TEN) == ""
-    strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
-    reported = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
-    assert reported == "Strides on stairs: 2 up, 1 down; excluded from the means of walking."
 
 
 def test_an_error_that_was_not_verified_has_a_dagger() -> None:
@@ -126,51 +134,3 @@ def test_how_a_test_is_done_and_ends_names_the_course_as_it_was_entered(protocol
         six = PlannedTest(protocol, course_m=6.0)
         assert instruction(six).startswith("A straight 10 m: 2 m run-in, 6 m timed")
         assert end_words(six) == "6 m further on, by the sensors"
-
-
-UP = replace(
-    TEN, protocol=TimedProtocol.UP_AND_GO, course_m=3.0, course_found_m=6.6, sensor_distance_m=13.34, distance_m=13.34
-)
-
-
-@pytest.mark.parametrize(
-    ("reasons", "sentence"),
-    [
-        ((NotValid.COURSE_LONGER,), "Not valid: 6.6 m from the chair to the turn, the course is 3 m."),
-        (
-            (NotValid.COURSE_LONGER, NotValid.NO_TURN, NotValid.ELSEWHERE),
-            "Not valid: 13.3 m walked without a turn, the course turns at 3 m.",
-        ),
-        ((NotValid.COURSE_LONGER, NotValid.NO_RISE), "Not valid: no rise from the chair."),
-        ((), ""),
-    ],
-)
-def test_a_test_that_is_not_valid_is_stated_by_its_gravest_reason(reasons: tuple[NotValid, ...], sentence: str) -> None:
-    test = replace(UP, not_valid=reasons)
-    assert not_valid_sentence(test) == sentence
-    assert bool(remedy_sentence(test)) is bool(reasons)
-
-
-@pytest.mark.parametrize("reason", NotValid)
-def test_every_reason_has_its_words_and_what_to_do(reason: NotValid) -> None:
-    test = replace(UP, not_valid=(reason,))
-    assert not_valid_sentence(test).startswith("Not valid: ")
-    assert "{" not in not_valid_sentence(test) + remedy_sentence(test)
-    assert remedy_sentence(test)
-
-
-def test_the_source_of_a_distance_is_stated_of_a_set_time_alone() -> None:
-    assert source_sentence(TWO) == "Distance: foot sensors."
-    typed = replace(TWO, distance_source=DistanceSource.TYPED, course_m=20.0, sensor_distance_m=131.6)
-    assert source_sentence(typed) == "Distance: laps entered, 20 m each; the foot sensors measured 132 m."
-    assert source_sentence(replace(typed, sensor_distance_m=math.nan)) == "Distance: laps entered, 20 m each."
-    assert source_sentence(replace(TWO, distance_m=math.nan)) == ""
-    assert source_sentence(UP) == ""
-
-
-def test_the_slowest_of_several_rises_is_named() -> None:
-    rises = tuple(Rise(3.0 * k, 3.0 * k + lasts_s) for k, lasts_s in enumerate((1.1, 1.4, 1.2)))
-    five = replace(TEN, protocol=TimedProtocol.SIT_TO_STAND, rises=rises)
-    assert slowest_sentence(five) == "Slowest rise: number 2, 1.40 s."
-    assert slowest_sentence(replace(five, rises=rises[:1])) == ""
-    assert slowest_sentence(replace(UP, rises=rises[:1])) == ""
