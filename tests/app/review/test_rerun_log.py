@@ -6,12 +6,15 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
+from syrupy.assertion import SnapshotAssertion
 
 from app.exports.gait_csv import write_gait
 from app.review import rerun_log
@@ -66,9 +69,39 @@ def visit(n: int = 50) -> tuple[Session, Analysis]:
     return session, Analysis(Method.ROBUST, False, (), analysed)
 
 
+def logged(session: Session, analysis: Analysis, folder: Path) -> Path:
+    path = folder / "session.rrd"
+    write_log(session, analysis, path)
+    return path
+
+
+@lru_cache(maxsize=10)
+def chunks_of(path: Path) -> list[Chunk]:
+    """Everything in a log but its layout; read once, as no test writes to a path twice."""
+    return list(RrdReader(path).stream())
+
+
+def look_of(path: Path, entity: str) -> dict[str, Any]:
+    """What holds at any time of one entity."""
+    (found,) = (c for c in chunks_of(path) if c.is_static and c.entity_path == entity)
+    return found.to_record_batch().to_pydict()
+
+
+def layout_of(path: Path) -> str:
+    """The stored layout, as text."""
+    reader = RrdReader(path)
+    (layout,) = reader.blueprints()
+    return "".join(str(c.to_record_batch().to_pydict()) for c in reader.stream(store=layout))
+
+
+def opaque(colour: str) -> list[list[int]]:
+    """A colour of the theme as a log has it."""
+    return [[int(colour[1:] + "FF", 16)]]
+
+
 def curve(path: Path, entity: str, timeline: str) -> tuple[FloatArray, FloatArray]:
     """Read one entity on one timeline: seconds and values (n, k)."""
-    chunks: list[Chunk] = [c for c in RrdReader(path).stream() if c.entity_path == entity and not c.is_static]
+    chunks = [c for c in chunks_of(path) if c.entity_path == entity and not c.is_static]
     batches = [c.to_record_batch() for c in chunks if timeline in c.timeline_names]
     time_s = [batch.column(timeline).cast("int64").to_numpy() / 1e9 for batch in batches]
     values = [np.array(batch.column("Scalars:scalars").to_pylist(), dtype=float) for batch in batches]
@@ -79,18 +112,18 @@ def curve(path: Path, entity: str, timeline: str) -> tuple[FloatArray, FloatArra
 def test_every_sample_and_angle_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rerun_log, "ROWS_PER_CHUNK", 20)
     session, analysis = visit()
-    write_log(session, analysis, tmp_path / "session.rrd")
+    path = logged(session, analysis, tmp_path)
     walk, angles = session.recordings[1], analysis.recordings[0]
 
-    time_s, gyr_rad_s = curve(tmp_path / "session.rrd", "/raw/left_shank/angular_rate", "walking_1")
+    time_s, gyr_rad_s = curve(path, "/raw/left_shank/angular_rate", "walking_1")
     np.testing.assert_allclose(time_s, walk.imu[Site.LEFT_SHANK].time_s, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(gyr_rad_s, walk.imu[Site.LEFT_SHANK].gyr_rad_s)
 
     angle = angles.joints[Joint.LEFT_KNEE]
-    time_s, result_deg = curve(tmp_path / "session.rrd", "/angles/left_knee/result", "walking_1")
+    time_s, result_deg = curve(path, "/angles/left_knee/result", "walking_1")
     np.testing.assert_allclose(time_s, angles.time_s, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(result_deg[:, 0], np.rad2deg(angle.angle_rad))
-    _, band_deg = curve(tmp_path / "session.rrd", "/angles/left_knee/certainty", "walking_1")
+    _, band_deg = curve(path, "/angles/left_knee/certainty", "walking_1")
     np.testing.assert_allclose(band_deg[:, 1] - band_deg[:, 0], 4 * np.rad2deg(angle.sd_rad))
 
 
@@ -116,7 +149,7 @@ def judged_visit(
 def lies_at(path: Path, timeline: str) -> set[str]:
     return {
         chunk.entity_path
-        for chunk in RrdReader(path).stream()
+        for chunk in chunks_of(path)
         if timeline in chunk.timeline_names and chunk.entity_path in NOBODYS
     }
 
@@ -139,30 +172,24 @@ def test_a_curve_lies_where_what_may_be_stated_of_it_lets_it(
     tmp_path: Path, stated: tuple[Assessment, Assessment, Assessment], entity: str, name: str
 ) -> None:
     session, analysis = judged_visit(*stated)
-    path = tmp_path / "session.rrd"
-    write_log(session, analysis, path)
+    path = logged(session, analysis, tmp_path)
     assert lies_at(path, "walking_1") == {entity}
     assert lies_at(path, "walking_2") == {"/angles/left_knee/result"}
     angle_deg = np.rad2deg(analysis.recordings[0].joints[Joint.LEFT_KNEE].angle_rad)
     taken_deg = angle_deg.mean() if "shape" in entity else 0.0
     _, curve_deg = curve(path, entity, "walking_1")
     np.testing.assert_allclose(curve_deg[:, 0], angle_deg - taken_deg, atol=1e-12)
-    (label,) = [
-        c.to_record_batch().to_pydict() for c in RrdReader(path).stream() if c.is_static and c.entity_path == entity
-    ]
+    label = look_of(path, entity)
     assert label["SeriesLines:names"] == [[name]]
-    is_grey = label["SeriesLines:colors"] == [[int(DARK.control[1:] + "FF", 16)]]
-    assert is_grey == entity.startswith("/withheld")
-    (layout,) = RrdReader(path).blueprints()
-    shown = "".join(str(c.to_record_batch().to_pydict()) for c in RrdReader(path).stream(store=layout))
+    assert (label["SeriesLines:colors"] == opaque(DARK.control)) == entity.startswith("/withheld")
+    shown = layout_of(path)
     assert "/withheld" not in shown
     assert "'Data quality'" in shown
 
 
 def test_once_a_strap_slipped_a_curve_is_not_reported(tmp_path: Path) -> None:
     session, analysis = judged_visit(GOOD, GOOD, GOOD, slipped_from_s=5.2)
-    path = tmp_path / "session.rrd"
-    write_log(session, analysis, path)
+    path = logged(session, analysis, tmp_path)
     before_s, _ = curve(path, "/angles/left_knee/result", "walking_1")
     after_s, after_deg = curve(path, "/withheld/left_knee/result", "walking_1")
     time_s = analysis.recordings[0].time_s
@@ -172,13 +199,12 @@ def test_once_a_strap_slipped_a_curve_is_not_reported(tmp_path: Path) -> None:
 
 
 def text_of(path: Path, entity: str) -> str:
-    (document,) = [c.to_record_batch().to_pydict() for c in RrdReader(path).stream() if c.entity_path == entity]
-    return str(document["TextDocument:text"][0][0])
+    return str(look_of(path, entity)["TextDocument:text"][0][0])
 
 
 def test_the_log_states_what_may_be_read_and_why_not(tmp_path: Path) -> None:
-    write_log(*judged_visit(GOOD, BAD, SIGN), tmp_path / "session.rrd")
-    first, second = text_of(tmp_path / "session.rrd", "/may_be_read").split("## walking_2")
+    path = logged(*judged_visit(GOOD, BAD, SIGN), tmp_path)
+    first, second = text_of(path, "/may_be_read").split("## walking_2")
     assert "| left knee | shape | read |  |" in first
     assert "| left knee | height | withheld | There is no standing reference" in first
     assert "| left knee | sign | withheld | Flexion and extension could not be distinguished" in first
@@ -188,24 +214,22 @@ def test_the_log_states_what_may_be_read_and_why_not(tmp_path: Path) -> None:
 
 
 def test_the_log_states_what_it_is_for(tmp_path: Path) -> None:
-    write_log(*visit(), tmp_path / "session.rrd")
-    assert "Research use. Not a medical device." in text_of(tmp_path / "session.rrd", "/may_be_read")
+    assert "Research use. Not a medical device." in text_of(logged(*visit(), tmp_path), "/may_be_read")
 
 
 def test_a_recording_is_a_timeline_and_a_discarded_one_is_not_there(tmp_path: Path) -> None:
-    write_log(*visit(), tmp_path / "session.rrd")
-    chunks = list(RrdReader(tmp_path / "session.rrd").stream())
+    chunks = chunks_of(logged(*visit(), tmp_path))
     assert {name for chunk in chunks for name in chunk.timeline_names} == {"standing_1", "walking_1", "walking_2"}
     result = [chunk.timeline_names for chunk in chunks if chunk.entity_path == "/angles/left_knee/result"]
     assert sorted(names[0] for names in result if names) == ["walking_1", "walking_2"]
 
 
 def test_the_layout_is_in_the_file(tmp_path: Path) -> None:
-    write_log(*visit(), tmp_path / "session.rrd")
-    reader = RrdReader(tmp_path / "session.rrd")
+    path = logged(*visit(), tmp_path)
+    reader = RrdReader(path)
     (layout,) = reader.blueprints()
     assert layout.application_id == reader.recordings()[0].application_id == rerun_log.APPLICATION
-    text = "".join(str(chunk.to_record_batch().to_pydict()) for chunk in reader.stream(store=layout))
+    text = layout_of(path)
     for part in ("Angles and phases", "Angular rate", "Specific force", "/angles/left_knee", "walking_1"):
         assert f"'{part}'" in text
 
@@ -218,8 +242,7 @@ def test_two_writings_are_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_the_layout_is_in_one_order_however_rerun_gives_its_parts(tmp_path: Path) -> None:
-    write_log(*visit(), tmp_path / "session.rrd")
-    reader = RrdReader(tmp_path / "session.rrd")
+    reader = RrdReader(logged(*visit(), tmp_path))
     chunks = list(reader.stream(store=reader.blueprints()[0]))
     assert len({chunk.entity_path for chunk in chunks}) < len(chunks)  # one place has several
     names = [
@@ -230,14 +253,13 @@ def test_the_layout_is_in_one_order_however_rerun_gives_its_parts(tmp_path: Path
 
 
 def test_no_name_and_no_path_is_inside(tmp_path: Path) -> None:
-    session, analysis = visit()
-    write_log(session, analysis, tmp_path / "session.rrd")
-    reader = RrdReader(tmp_path / "session.rrd")
+    path = logged(*visit(), tmp_path)
+    reader = RrdReader(path)
     stores = [*reader.recordings(), *reader.blueprints()]
     text = "".join(c.format(width=10_000) for store in stores for c in reader.stream(store=store))
     for hidden in ("iller", "serial", tmp_path.name, "tmp"):
         assert hidden not in text
-        assert hidden.encode() not in (tmp_path / "session.rrd").read_bytes()
+        assert hidden.encode() not in path.read_bytes()
 
 
 def test_a_session_without_joints_or_recordings_is_a_log_all_the_same(tmp_path: Path) -> None:
@@ -269,7 +291,7 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
 
 def words(path: Path, entity: str, component: str, timeline: str = "walking_1") -> list[tuple[float, str]]:
     """Read time, seconds, and word of every row of one entity, in order of time."""
-    chunks = [c for c in RrdReader(path).stream() if c.entity_path == entity and timeline in c.timeline_names]
+    chunks = [c for c in chunks_of(path) if c.entity_path == entity and timeline in c.timeline_names]
     batches = [c.to_record_batch() for c in chunks]
     times = [ns / 1e9 for batch in batches for ns in batch.column(timeline).cast("int64").to_pylist()]
     found = [row[0] for b in batches for row in b.column(component).to_pylist()]
@@ -299,7 +321,7 @@ def test_at_each_sample_the_lane_is_in_the_phase_of_the_walk(walk: tuple[Path, A
 
 
 def entities(path: Path, timeline: str) -> set[str]:
-    return {chunk.entity_path for chunk in RrdReader(path).stream() if timeline in chunk.timeline_names}
+    return {chunk.entity_path for chunk in chunks_of(path) if timeline in chunk.timeline_names}
 
 
 @pytest.mark.parametrize("joint", LEG_JOINTS)
@@ -326,13 +348,12 @@ def test_the_phases_lie_in_the_axes_of_each_curve_and_below_it(walk: tuple[Path,
 
 
 def test_phases_and_curves_are_in_the_colours_of_their_side(walk: tuple[Path, Analysis]) -> None:
-    chunks = [c for c in RrdReader(walk[0] / "session.rrd").stream() if c.is_static]
-    colours = {c.entity_path: c.to_record_batch().to_pydict().get("SeriesLines:colors") for c in chunks}
+    path = walk[0] / "session.rrd"
     for side in Side:
         full, pale = getattr(DARK, side), getattr(DARK, f"{side}_soft")
         expected = {"result": full, "phases/loading": full, "phases/foot_flat": pale, "phases/swing": DARK.control}
         for name, colour in expected.items():
-            assert colours[f"/angles/{side}_knee/{name}"] == [[int(colour[1:] + "FF", 16)]]
+            assert look_of(path, f"/angles/{side}_knee/{name}")["SeriesLines:colors"] == opaque(colour)
 
 
 def test_the_log_opens_at_the_first_contact_of_a_used_stride_and_the_legs_walk(walk: tuple[Path, Analysis]) -> None:
@@ -348,7 +369,7 @@ def test_the_log_opens_at_the_first_contact_of_a_used_stride_and_the_legs_walk(w
     assert stated["TimePanelBlueprint:loop_mode"] == [[3]]  # all of it, again and again
     times_s = [
         column.cast("int64").to_numpy() / 1e9
-        for c in RrdReader(path).stream()
+        for c in chunks_of(path)
         if "walking_1_steps" in c.timeline_names
         for column in [c.to_record_batch().column("walking_1_steps")]
     ]
@@ -378,8 +399,7 @@ def test_beside_the_first_step_is_the_answer_and_each_leg_has_its_phase(walk: tu
 
 
 def test_a_walk_without_a_used_stride_opens_at_its_beginning(tmp_path: Path) -> None:
-    write_log(*visit(), tmp_path / "session.rrd")
-    chunks = list(RrdReader(tmp_path / "session.rrd").stream())
+    chunks = chunks_of(logged(*visit(), tmp_path))
     assert not any("steps" in name for c in chunks for name in c.timeline_names)
 
 
@@ -391,9 +411,8 @@ def test_certainty_is_a_band_between_its_edges(walk: tuple[Path, Analysis]) -> N
         np.testing.assert_allclose(time_s, np.repeat(recording.time_s, 2), atol=1e-9)
         np.testing.assert_allclose(band_deg[::2, 0], angle_deg - 2 * sd_deg, atol=1e-9)
         np.testing.assert_allclose(band_deg[1::2, 0], angle_deg + 2 * sd_deg, atol=1e-9)
-        looks = [c for c in RrdReader(path).stream() if c.is_static and c.entity_path == f"/angles/{joint}/band"]
-        (look,) = [c.to_record_batch().to_pydict() for c in looks]
-        assert look["SeriesLines:colors"] == [[int(getattr(DARK, f"{joint.side}_soft")[1:] + "FF", 16)]]
+        look = look_of(path, f"/angles/{joint}/band")
+        assert look["SeriesLines:colors"] == opaque(getattr(DARK, f"{joint.side}_soft"))
         assert look["SeriesLines:aggregation_policy"] == [[5]]  # lowest and highest of a pixel: zoomed out it is whole
 
 
@@ -421,59 +440,60 @@ def test_no_panel_of_words_is_empty_whatever_recording_is_chosen(walk: tuple[Pat
     assert text == "This recording has no joint angles. Choose a walk below."
     (recording,) = walk[1].recordings
     free = replace(recording, kind=RecordingKind.FREE_MOTION, joints={}, gait={})
-    write_log(WALKED, replace(walk[1], recordings=(free,)), tmp_path / "session.rrd")
+    path = logged(WALKED, replace(walk[1], recordings=(free,)), tmp_path)
     texts = [
         c.to_record_batch().to_pydict()["TextDocument:text"][0][0]
-        for c in RrdReader(tmp_path / "session.rrd").stream()
+        for c in chunks_of(path)
         if c.entity_path == "/answer"
     ]
     assert texts
     assert all(text.strip() for text in texts)
-    (layout,) = RrdReader(tmp_path / "session.rrd").blueprints()
-    shown = "".join(
-        str(c.to_record_batch().to_pydict()) for c in RrdReader(tmp_path / "session.rrd").stream(store=layout)
-    )
-    assert "'/events'" not in shown  # there are none
-    (layout,) = RrdReader(walk[0] / "session.rrd").blueprints()
-    shown = "".join(
-        str(c.to_record_batch().to_pydict()) for c in RrdReader(walk[0] / "session.rrd").stream(store=layout)
-    )
-    assert "'/events'" in shown
+    assert "'/events'" not in layout_of(path)  # there are none
+    assert "'/events'" in layout_of(walk[0] / "session.rrd")
 
 
-def doubtful(analysis: Analysis, **stated: Assessment) -> Analysis:
-    """The walk with another verdict of the left knee, or of the left leg's timing."""
+def doubtful(analysis: Analysis, joint: Joint = Joint.LEFT_KNEE, **stated: Assessment) -> Analysis:
+    """The walk with another verdict of a joint, or of the left leg's timing."""
     (recording,) = analysis.recordings
     verdicts = recording.verdicts
     joints, legs = dict(verdicts.joints), dict(verdicts.legs)
     if "timing" in stated:
         legs[Side.LEFT] = replace(verdicts.leg(Side.LEFT), timing=stated["timing"])
     else:
-        joints[Joint.LEFT_KNEE] = replace(verdicts.joint(Joint.LEFT_KNEE), **stated)
+        joints[joint] = replace(verdicts.joint(joint), **stated)
     return replace(analysis, recordings=(replace(recording, verdicts=replace(verdicts, joints=joints, legs=legs)),))
 
 
-@pytest.mark.parametrize(
-    ("stated", "gone"),
-    [
-        ({}, set()),
-        ({"shape": BAD}, {Joint.LEFT_KNEE}),
-        ({"sign": SIGN}, {Joint.LEFT_KNEE}),
-        ({"timing": assess([GateReason("strides", Verdict.NOT_REPORTED, 1, 3)])}, {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}),
-    ],
-)
+@pytest.fixture(scope="module")
+def doubted(walk: tuple[Path, Analysis], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Logs of the walk with one doubt each, by what is doubted."""
+    analysis = walk[1]
+    drifts = assess([GateReason("drift", Verdict.CARE, 4.0, 3.0, "deg")])
+    few = assess([GateReason("strides", Verdict.NOT_REPORTED, 1, 3)])
+    (recording,) = analysis.recordings
+    cases = {
+        "shape": doubtful(analysis, shape=SIGN),
+        "height": doubtful(analysis, height=BAD),
+        "sign": doubtful(analysis, sign=SIGN),
+        "timing": doubtful(analysis, timing=few),
+        "height to be read with care: not grey": doubtful(analysis, height=drifts),
+        "an ankle: the foot alone is grey": doubtful(analysis, Joint.RIGHT_ANKLE, height=BAD),
+        "a strap slipped": replace(analysis, recordings=(replace(recording, slipped_from_s={Side.RIGHT: 3.25}),)),
+    }
+    return {case: logged(WALKED, one, tmp_path_factory.mktemp("doubted")) for case, one in cases.items()}
+
+
 def test_no_lane_where_the_times_or_the_curve_may_not_be_reported(
-    walk: tuple[Path, Analysis], tmp_path: Path, stated: dict[str, Assessment], gone: set[Joint]
+    walk: tuple[Path, Analysis], doubted: dict[str, Path]
 ) -> None:
-    write_log(WALKED, doubtful(walk[1], **stated), tmp_path / "session.rrd")
-    found = entities(tmp_path / "session.rrd", "walking_1")
-    assert {joint for joint in LEG_JOINTS if f"/angles/{joint}/phases/swing" not in found} == gone
-
-
-def panel_of(session: Session, analysis: Analysis, path: Path) -> str:
-    write_log(session, analysis, path)
-    ((_, text),) = words(path, "/answer", "TextDocument:text")
-    return text
+    for path, gone in (
+        (walk[0] / "session.rrd", set()),
+        (doubted["shape"], {Joint.LEFT_KNEE}),
+        (doubted["sign"], {Joint.LEFT_KNEE}),
+        (doubted["timing"], {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}),
+    ):
+        found = entities(path, "walking_1")
+        assert {joint for joint in LEG_JOINTS if f"/angles/{joint}/phases/swing" not in found} == gone
 
 
 def test_beside_the_legs_is_the_answer_with_a_verdict_for_each_joint(walk: tuple[Path, Analysis]) -> None:
@@ -490,59 +510,19 @@ def test_beside_the_legs_is_the_answer_with_a_verdict_for_each_joint(walk: tuple
     assert "Strap moved" not in text
 
 
-@pytest.mark.parametrize(
-    ("stated", "row", "is_grey"),
-    [
-        (
-            {"shape": SIGN},
-            "- **Left knee: not reported.** The left leg and foot are shown in grey. Flexion and extension could not",
-            True,
-        ),
-        (
-            {"height": BAD},
-            "- **Left knee: no standing reference.** The left leg and foot are shown in grey. There is no standing",
-            True,
-        ),
-        (
-            {"sign": SIGN},
-            "- **Left knee: sign unclear.** The left leg and foot are shown in grey. Flexion and extension could not",
-            True,
-        ),
-        (
-            {"height": assess([GateReason("drift", Verdict.CARE, 4.0, 3.0, "deg")])},
-            "- **Left knee: caution.**",
-            False,
-        ),
-    ],
-)
 def test_the_panel_states_what_is_not_reported_why_and_that_it_is_grey(
-    walk: tuple[Path, Analysis], tmp_path: Path, stated: dict[str, Assessment], row: str, is_grey: bool
+    doubted: dict[str, Path], snapshot: SnapshotAssertion
 ) -> None:
-    text = panel_of(WALKED, doubtful(walk[1], **stated), tmp_path / "session.rrd")
-    assert row in text
-    assert ("The left leg and foot are shown in grey." in text) == is_grey
-    assert "The right" not in text
+    stated = {}
+    for case, path in doubted.items():
+        ((_, text),) = words(path, "/answer", "TextDocument:text")
+        stated[case] = [line for line in text.splitlines() if line.startswith("- ")]  # of joints and straps
+    assert stated == snapshot
 
 
-def test_a_foot_alone_is_grey_where_only_its_ankle_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
-    (recording,), stated = walk[1].recordings, dict(walk[1].recordings[0].verdicts.joints)
-    stated[Joint.RIGHT_ANKLE] = replace(stated[Joint.RIGHT_ANKLE], height=BAD)
-    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=stated))
-    text = panel_of(WALKED, replace(walk[1], recordings=(doubted,)), tmp_path / "session.rrd")
-    assert "- **Right ankle: no standing reference.** The right foot is shown in grey." in text
-    assert "leg and foot are shown in grey" not in text
-
-
-def test_the_panel_states_when_a_strap_slipped(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
-    (recording,) = walk[1].recordings
-    slipped = replace(walk[1], recordings=(replace(recording, slipped_from_s={Side.RIGHT: 3.25}),))
-    text = panel_of(WALKED, slipped, tmp_path / "session.rrd")
-    assert (
-        "Strap moved on the right leg. From 3.2 s on, the curves of this leg are not reported; the leg is grey." in text
-    )
-    assert "Strap moved on the left leg" not in text
+def test_from_when_a_strap_slipped_there_is_no_lane(doubted: dict[str, Path]) -> None:
     for joint in (Joint.RIGHT_KNEE, Joint.LEFT_KNEE):
-        time_s, _ = curve(tmp_path / "session.rrd", f"/angles/{joint}/phases/swing", "walking_1")
+        time_s, _ = curve(doubted["a strap slipped"], f"/angles/{joint}/phases/swing", "walking_1")
         assert (time_s.max() <= 3.26) == (joint is Joint.RIGHT_KNEE)
 
 
@@ -553,7 +533,8 @@ def test_nobodys_name_is_in_the_panel(walk: tuple[Path, Analysis], tmp_path: Pat
         WALKED, recordings=(*others, replace(last, name=called)), patient=Patient(code="Miller"), notes="Miller"
     )
     analysis = replace(walk[1], recordings=(replace(walk[1].recordings[0], name=called),))
-    assert "iller" not in panel_of(session, analysis, tmp_path / "session.rrd")
+    ((_, text),) = words(logged(session, analysis, tmp_path), "/answer", "TextDocument:text")
+    assert "iller" not in text
 
 
 def test_a_view_is_called_not_reported_where_no_walk_shows_its_curve(walk: tuple[Path, Analysis]) -> None:
@@ -591,11 +572,11 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     folder, analysis = walk
     session = WALKED
     legs = draw_legs(session, analysis, analysis.recordings[0])
-    reader = RrdReader(folder / "session.rrd")
+    path = folder / "session.rrd"
     for side in Side:
         for number, part in enumerate(("thigh", "shank")):
-            chunks = [c for c in reader.stream() if c.entity_path == f"/legs/{side}/{part}"]
-            moving = [c.to_record_batch() for c in chunks if not c.is_static]
+            place = f"/legs/{side}/{part}"
+            moving = [c.to_record_batch() for c in chunks_of(path) if c.entity_path == place and not c.is_static]
             in_order = np.argsort(np.concatenate([b.column("walking_1").cast("int64") for b in moving]))
             found = {
                 name: np.array([row[0] for b in moving for row in b.column(f"Capsules3D:{name}").to_pylist()])[in_order]
@@ -605,8 +586,7 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
             ends_m = found["translations"] + ends_of(found["quaternions"], found["lengths"])
             np.testing.assert_allclose(ends_m, legs[side].leg_m[:, number + 1], atol=1e-5)
             assert (found["radii"] > 0.03).all()  # bodies, not sticks
-            (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static]
-            assert look["Capsules3D:colors"] == [[int(getattr(DARK, side)[1:] + "FF", 16)]]
+            assert look_of(path, place)["Capsules3D:colors"] == opaque(getattr(DARK, side))
     first = next(iter(rerun_log._blueprint(session, analysis, None).root_container.contents))
     assert isinstance(first, rrb.Vertical)
     above, curves = list(first.contents)
@@ -618,29 +598,22 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     assert answer.name == "SIMULATED. Answer"
     assert view.name == "SIMULATED. Legs: drawn, not measured"
     assert isinstance(curves, rrb.Horizontal)
-    text = "".join(str(c.to_record_batch().to_pydict()) for c in reader.stream() if c.entity_path == "/about_legs")
+    text = text_of(path, "/about_legs")
     assert "drawn, not measured" in text
     assert "1.70 m, which nobody typed" in text
 
 
 def test_a_leg_is_grey_where_an_angle_that_bends_it_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
-    _, analysis = walk
-    session = WALKED
-    (recording,), stated = analysis.recordings, dict(analysis.recordings[0].verdicts.joints)
-    stated[Joint.LEFT_KNEE] = replace(stated[Joint.LEFT_KNEE], height=BAD)
-    stated[Joint.RIGHT_ANKLE] = replace(stated[Joint.RIGHT_ANKLE], sign=SIGN)
-    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=stated))
-    write_log(session, replace(analysis, recordings=(doubted,)), tmp_path / "session.rrd")
-    chunks = list(RrdReader(tmp_path / "session.rrd").stream())
+    doubted = doubtful(doubtful(walk[1], height=BAD), Joint.RIGHT_ANKLE, sign=SIGN)
+    path = logged(WALKED, doubted, tmp_path)
+    chunks = chunks_of(path)
     drawn = {c.entity_path for c in chunks if "walking_1" in c.timeline_names and c.entity_path.startswith("/legs")}
     assert drawn == {
         *(f"/legs/left/withheld_{part}" for part in ("thigh", "shank", "foot")),
         *("/legs/right/thigh", "/legs/right/shank", "/legs/right/withheld_foot"),
     }
     for name in drawn:
-        (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static and c.entity_path == name]
-        is_grey = look["Capsules3D:colors"] == [[int(DARK.control[1:] + "FF", 16)]]
-        assert is_grey == ("withheld" in name)
+        assert (look_of(path, name)["Capsules3D:colors"] == opaque(DARK.control)) == ("withheld" in name)
 
 
 @pytest.mark.endurance
