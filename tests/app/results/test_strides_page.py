@@ -36,9 +36,8 @@ def analysis(session: Session) -> Analysis:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis) -> ResultPage:
-    page = ResultPage()
-    qtbot.addWidget(page)
+def page(qtbot: QtBot, shared_page: ResultPage, session: Session, analysis: Analysis) -> ResultPage:
+    page = shared_page
     page.resize(1280, 700)
     page.set_room(1280.0, 672.0)
     page.show_visit(AnalysedVisit(session, analysis), can_choose=True)

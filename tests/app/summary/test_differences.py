@@ -42,6 +42,11 @@ def differences(folder: Path, *parts: Part) -> dict[tuple[str, str], dict[str, s
     return {(row["side"], row["parameter"]): row for row in table(folder / "differences.csv")}
 
 
+def sides(folder: Path, one: Part) -> dict[str, dict[str, str]]:
+    write_sides([one], (Side.LEFT, Side.RIGHT), folder / "sides.csv")
+    return {row["parameter"]: row for row in table(folder / "sides.csv")}
+
+
 def test_what_can_be_read_is_reported_with_its_error_and_what_it_contains(tmp_path: Path) -> None:
     found = differences(tmp_path, part("A"), part("B", left=leg(Side.LEFT, knee_range_deg=66.0)))
     row = found["left", "knee_range_deg"]
@@ -113,8 +118,7 @@ def test_a_curve_without_a_height_is_compared_by_its_shape_alone(tmp_path: Path)
 
 def test_legs_are_set_side_by_side_with_their_status(tmp_path: Path) -> None:
     one = part("A", calibrations(Joint.RIGHT_ANKLE, axis_sd_rad=None), left=leg(Side.LEFT, knee_range_deg=75.0))
-    write_sides([one], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
-    found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
+    found = sides(tmp_path, one)
     knee, ankle, time = (found[name] for name in ("knee_range_deg", "ankle_range_deg", "stride_time_s"))
     assert (knee["difference"], knee["status"], knee["verdict"]) == ("15.00000", "read", "exceeds_error")
     # 1.96 times hypot(1.2, 0.043 * 75) and hypot(1.2, 0.043 * 60) is 8.75, and 1 ms of lag in each leg
@@ -178,8 +182,7 @@ def test_a_not_reported_knee_withholds_what_the_shank_leans(tmp_path: Path) -> N
 
 def test_legs_differ_in_measures_for_fitting_by_more_than_their_error(tmp_path: Path) -> None:
     left, right = with_fitting(leg(Side.LEFT), 75.0, 12.0), with_fitting(leg(Side.RIGHT), 60.0, -2.0)
-    write_sides([part("A", left=left, right=right)], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
-    found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
+    found = sides(tmp_path, part("A", left=left, right=right))
     rise, pitch = found["foot_heel_rise_deg"], found["foot_pitch_at_contact_deg"]
     assert (rise["difference"], rise["verdict"]) == ("15.00000", "exceeds_error")
     assert float(rise["error"]) == pytest.approx(8.5, abs=0.01)  # healthy people's; 3.2 would make 8.9 of it
@@ -226,9 +229,7 @@ def test_what_goes_with_speed_is_taken_out_beside_and_the_error_of_the_differenc
 def test_stride_length_is_set_side_by_side_and_never_judged(tmp_path: Path) -> None:
     """Feet travel equally far: of healthy people 41 of 100 would be called."""
     one = part("A", left=leg(Side.LEFT, length_m=1.5), right=leg(Side.RIGHT, length_m=1.2))
-    write_sides([one], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
-    rows = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
-    length = rows["stride_length_m"]
+    length = sides(tmp_path, one)["stride_length_m"]
     assert float(length["left_mean"]) > float(length["right_mean"])
     assert (length["verdict"], length["mark"], length["low"]) == ("no_published_figure", "", "")
 
@@ -236,10 +237,7 @@ def test_stride_length_is_set_side_by_side_and_never_judged(tmp_path: Path) -> N
 @pytest.mark.parametrize(("stance", "mark"), [(62.0, ""), (63.6, "beyond_error"), (65.0, "beyond_healthy")])
 def test_legs_bear_the_mark_of_what_they_differ_by(tmp_path: Path, stance: float, mark: str) -> None:
     """The right has 60 %; the error is 3.0 points, and 95 of 100 healthy people differ by less than 4.0."""
-    write_sides(
-        [part("A", left=leg(Side.LEFT, stance_percent=stance))], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv"
-    )
-    row = next(row for row in table(tmp_path / "sides.csv") if row["parameter"] == "stance_percent")
+    row = sides(tmp_path, part("A", left=leg(Side.LEFT, stance_percent=stance)))["stance_percent"]
     assert row["mark"] == mark
     assert float(row["healthy_limit"]) == pytest.approx(4.0, abs=0.1)
 
@@ -328,8 +326,7 @@ def test_a_mean_curve_has_its_spread_and_its_strides_under_their_names(tmp_path:
 @pytest.mark.parametrize(("strides", "has_index"), [(2, False), (3, True)])
 def test_symmetry_is_of_sizes_and_of_three_strides(tmp_path: Path, strides: int, has_index: bool) -> None:
     one = part("A", left=leg(Side.LEFT, strides, time_s=1.2), right=leg(Side.RIGHT, 12, time_s=1.0))
-    write_sides([one], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
-    found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
+    found = sides(tmp_path, one)
     index = found["stride_time_s"]["symmetry_index_percent"]
     assert index == (f"{100 * 0.2 / 1.1:.5f}" if has_index else "")
     assert found["knee_at_initial_contact_deg"]["symmetry_index_percent"] == ""  # a height is no size

@@ -37,7 +37,7 @@ from core.session import Patient, Session
 from core.timed.protocols import TimedProtocol
 from core.verdicts.goals import GoalStanding
 from core.verdicts.model import Verdict
-from devices.simulation.walker import DEMONSTRATION
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.course_material import analysis, course, recordings, timed, unsure, walked
 from tests.core.verdicts.built_walk import judged_walk
 from tests.simulated import analysis_of, session_of
@@ -208,7 +208,8 @@ def test_a_not_reported_value_is_an_empty_cell() -> None:
 
 @pytest.fixture(scope="module")
 def agreed() -> Session:
-    session = session_of(DEMONSTRATION)
+    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
+    session = session_of(replace(DEMONSTRATION, recordings=recordings))
     goals = (knee(45.0), Goal(SPEED, GoalOf.WALK, 3.0, DAY, "H. Keller", until=NEXT, note="for the ferry"))
     patient = replace(session.patient, goals=goals)
     return replace(session, patient=patient, started="2026-11-21T10:00:00+01:00")

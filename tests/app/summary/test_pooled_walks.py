@@ -49,37 +49,24 @@ def of(condition: str, test: PlannedTest | None = None, note: str = "", *, is_re
     return replace(reported, is_restrapped_before=is_restrapped)
 
 
-@pytest.mark.parametrize(
-    ("reported", "expected"),
-    [
-        ([("A", None), ("B", AlignmentChange("A", UP)), ("A", None)], ["A", "B", "A2"]),
-        ([("A", None), ("A", None), ("B", AlignmentChange("A", UP)), ("A", None)], ["A", "A", "B", "A3"]),
-        ([("A", None), ("B", AlignmentChange("A", UP)), ("A", None), ("A", None)], ["A", "B", "A2", "A2"]),
-        # nobody has stated that B is another alignment, or it is none
-        ([("Barefoot", None), ("Shoes", None), ("Barefoot", None)], ["A", "B", "A"]),
-        (
-            [("A", None), ("B", AlignmentChange("A", UP)), ("B", AlignmentChange("A", UP)), ("Shoes", None)],
-            ["A", "B", "B", "C"],
-        ),
-    ],
-)
-def test_walks_with_what_the_prosthesis_was_put_back_to_are_taken_by_themselves(
-    reported: list[tuple[str, AlignmentChange | None]], expected: list[str]
-) -> None:
-    assert letters(walked(*reported)) == expected
-
-
-def test_put_back_by_hand_and_written_down_as_a_change_it_is_no_return() -> None:
-    """C is what A was, so who walks with A again was elsewhere only in between."""
-    reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", DOWN)), ("C", None))
-    assert letters(reported) == ["A", "B", "C", "C"]
-
-
+A, B, B_TO_C = ("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", UP))
+SHOES = ("Shoes", None)
 AGAIN = AlignmentChange("B", DOWN, returns_to="A")
 
 
+def test_walks_with_what_the_prosthesis_was_put_back_to_are_taken_by_themselves() -> None:
+    """That B is another alignment, or one at all, somebody has to have stated."""
+    assert letters(walked(A, B, A)) == ["A", "B", "A2"]
+    assert letters(walked(A, A, B, A)) == ["A", "A", "B", "A3"]
+    assert letters(walked(A, B, A, A)) == ["A", "B", "A2", "A2"]
+    assert letters(walked(("Barefoot", None), SHOES, ("Barefoot", None))) == ["A", "B", "A"]
+    assert letters(walked(A, B, B, SHOES)) == ["A", "B", "B", "C"]
+    # put back by hand and written down as a change: C is what A was, so A was left only in between
+    assert letters(walked(A, B, ("C", AlignmentChange("B", DOWN)), ("C", None))) == ["A", "B", "C", "C"]
+
+
 def test_a_return_that_is_stored_as_one_is_a_condition_of_its_own() -> None:
-    reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("A again", AGAIN), ("A again", AGAIN))
+    reported = walked(A, B, ("A again", AGAIN), ("A again", AGAIN))
     assert letters(reported) == ["A", "B", "A2", "A2"]
     parts = parts_of(analysed(reported), reported)
     assert [(part.letter, part.name, len(part.walks)) for part in parts] == [
@@ -92,39 +79,27 @@ def test_a_return_that_is_stored_as_one_is_a_condition_of_its_own() -> None:
 
 def test_between_visits_a_return_is_the_alignment_that_it_leads_to() -> None:
     """As it was walked last, as those are that earlier versions stored under one name."""
-    for last in (("A again", AGAIN), ("A", None)):
-        reported = walked(("A", None), ("B", AlignmentChange("A", UP)), last)
+    for last in (("A again", AGAIN), A):
+        reported = walked(A, B, last)
         found = by_condition(analysed(reported), reported)
         assert {name: part.walks[0].name for name, part in found.items()} == {"A": "walk 3", "B": "walk 2"}
     stated = by_stated_condition(analysed(reported), reported)
     assert [part.walks[0].name for part in stated.values()] == ["walk 3", "walk 2"]
-    reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("A again", AGAIN))
+    reported = walked(A, B, ("A again", AGAIN))
     assert list(by_stated_condition(analysed(reported), reported)) == ["A", "B", "A again"]
 
 
 @pytest.mark.parametrize(
     ("reported", "expected"),
     [
-        (
-            [("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", UP)), ("A again", AGAIN)],
-            ("walk 1", "walk 3", "walk 4"),
-        ),
-        (
-            [
-                ("Shoes", None),
-                ("A", None),
-                ("B", AlignmentChange("A", UP)),
-                ("C", AlignmentChange("B", UP)),
-                ("D", AlignmentChange("C", UP)),
-            ],
-            ("walk 2", "walk 4", "walk 5"),
-        ),
-        ([("A", None), ("Shoes", None), ("AFO", None), ("Barefoot", None)], ("walk 2", "walk 3", "walk 4")),  # no chain
-        ([("A", None), ("B", AlignmentChange("A", UP))], ("walk 1", "walk 2")),
+        ((A, B, B_TO_C, ("A again", AGAIN)), ("walk 1", "walk 3", "walk 4")),
+        ((SHOES, A, B, B_TO_C, ("D", AlignmentChange("C", UP))), ("walk 2", "walk 4", "walk 5")),
+        ((A, SHOES, ("AFO", None), ("Barefoot", None)), ("walk 2", "walk 3", "walk 4")),  # no chain
+        ((A, B), ("walk 1", "walk 2")),
     ],
 )
 def test_a_report_of_a_chain_begins_with_its_starting_point(
-    reported: list[tuple[str, AlignmentChange | None]], expected: tuple[str, ...]
+    reported: tuple[tuple[str, AlignmentChange | None], ...], expected: tuple[str, ...]
 ) -> None:
     recordings = walked(*reported)
     assert default_walks(AnalysedVisit(Session(recordings), analysed(recordings))) == expected

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.summary.comparison import Compared, Comparison, Contrast
 from app.summary.conditions import Part
@@ -74,35 +75,15 @@ def test_what_is_not_reported_of_a_walk_does_not_vary() -> None:
     assert variation_of(row, (stance, B)) is None  # of both legs
 
 
-@pytest.mark.parametrize(
-    ("values", "difference", "words"),
-    [
-        (
-            (60.0, 61.2),
-            3.0,
-            "More than the walk-to-walk variation of A. Its two walks, 60.0° and 61.2°, differ by 1.2°.",
-        ),
-        (
-            (61.2, 60.0),
-            -1.2,
-            "Within the walk-to-walk variation of A. Its two walks, 60.0° and 61.2°, differ by 1.2°.",
-        ),
-        (
-            (60.0, 61.2, 60.5),
-            1.0,
-            "Within the walk-to-walk variation of A. Its 3 walks, from 60.0° to 61.2°, differ by up to 1.2°.",
-        ),
-        # rounded once, these would not give their difference
-        (
-            (60.04, 61.26),
-            3.0,
-            "More than the walk-to-walk variation of A. Its two walks, 60.04° and 61.26°, differ by 1.22°.",
-        ),
-    ],
-)
-def test_it_is_stated_with_numbers_that_agree_and_is_no_error(
-    values: tuple[float, ...], difference: float, words: str
-) -> None:
-    stated = variation_in_words(WalkVariation("knee_range_deg", "A", values), difference)
-    assert stated == words
-    assert "error" not in stated
+def test_it_is_stated_with_numbers_that_agree_and_is_no_error(snapshot: SnapshotAssertion) -> None:
+    def stated(difference: float, *values: float) -> str:
+        return variation_in_words(WalkVariation("knee_range_deg", "A", values), difference)
+
+    found = {
+        "more": stated(3.0, 60.0, 61.2),
+        "within": stated(-1.2, 61.2, 60.0),
+        "three walks": stated(1.0, 60.0, 61.2, 60.5),
+        "rounded once they would not give their difference": stated(3.0, 60.04, 61.26),
+    }
+    assert found == snapshot
+    assert "error" not in "".join(found.values())

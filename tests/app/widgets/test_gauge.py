@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter
 from pytestqt.qtbot import QtBot
+from syrupy.assertion import SnapshotAssertion
 
 from app.widgets import gauge as gauge_module
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
@@ -56,29 +57,6 @@ def test_in_german_a_figure_and_what_is_required_have_a_comma() -> None:
         use_language("en")
 
 
-def test_a_knee_has_both_rings_and_shows_figures_without_floors() -> None:
-    face = gauge_face(Joint.LEFT_KNEE, state(0.8, 6.2, floor_deg=4.0, is_closed=True), HUMAN, is_now=False)
-    assert face.state is GaugeState.ENOUGH
-    assert face.axis is not None
-    assert face.centre is not None
-    assert (face.axis.figure, face.axis.required, face.axis.share) == ("0.8", "1.5°", 1.0)
-    assert (face.centre.figure, face.centre.required, face.centre.share) == ("6.2", "10 mm", 1.0)
-
-
-def test_an_ankle_has_its_centre_only() -> None:
-    face = gauge_face(Joint.LEFT_ANKLE, state(20, 18), HUMAN, is_now=False)
-    assert face.axis is None
-    assert face.centre is not None
-    assert face.centre.figure == "18"
-
-
-def test_of_an_ankle_the_motion_is_enough_for_its_centre_only() -> None:
-    """Its axis is found while walking: nothing here has judged it."""
-    found = state(20, 6, is_closed=True)
-    assert gauge_face(Joint.LEFT_ANKLE, found, HUMAN, is_now=False).state is GaugeState.CENTRE
-    assert gauge_face(Joint.LEFT_KNEE, found, HUMAN, is_now=False).state is GaugeState.ENOUGH
-
-
 def test_a_ring_closes_by_as_much_with_each_halving() -> None:
     shares = []
     for axis_deg in (24.0, 12.0, 6.0, 3.0):
@@ -90,16 +68,6 @@ def test_a_ring_closes_by_as_much_with_each_halving() -> None:
     assert 0 < shares[0] < shares[-1] < 1
 
 
-def test_more_is_required_of_a_prosthesis() -> None:
-    human = gauge_face(Joint.LEFT_KNEE, state(1.0, 6), HUMAN, is_now=False)
-    hinge = gauge_face(Joint.LEFT_KNEE, state(1.0, 6, floor_deg=0.15), PROSTHESIS, is_now=False)
-    assert human.axis is not None
-    assert human.axis.is_met
-    assert hinge.axis is not None
-    assert hinge.centre is not None
-    assert (hinge.axis.is_met, hinge.axis.required, hinge.centre.required) == (False, "0.5°", "5 mm")
-
-
 def test_an_open_ring_never_looks_closed() -> None:
     axis = gauge_face(Joint.LEFT_KNEE, state(1.5001, 50), HUMAN, is_now=False).axis
     assert axis is not None
@@ -107,67 +75,55 @@ def test_an_open_ring_never_looks_closed() -> None:
     assert not axis.is_met
 
 
-def test_what_is_not_known_yet_is_a_dash() -> None:
-    for found in (None, state(57, 250)):
-        face = gauge_face(Joint.LEFT_KNEE, found, HUMAN, is_now=False)
-        assert face.axis is not None
-        assert (face.axis.figure, face.axis.share) == ("\N{EN DASH}", 0.0)
-
-
-def test_a_plateau_keeps_its_figure_and_its_open_ring() -> None:
-    face = gauge_face(Joint.LEFT_KNEE, state(3.8, 8, is_plateau=True), HUMAN, is_now=False)
-    assert face.state is GaugeState.PLATEAU
-    assert face.axis is not None
-    assert (face.axis.figure, face.axis.is_met) == ("3.8", False)
-    assert face.centre is not None
-    assert face.centre.is_met
-    once_more = gauge_face(Joint.LEFT_KNEE, state(3.8, 8, is_plateau=True), HUMAN, is_now=True)
-    assert once_more.state is GaugeState.NOW
-
-
-def test_a_prosthesis_that_turns_like_no_hinge_is_called_so() -> None:
-    loose = state(0.4, 4, floor_deg=6.0, is_closed=True)
-    assert gauge_face(Joint.LEFT_KNEE, loose, PROSTHESIS, is_now=False).state is GaugeState.LOOSE
-    assert gauge_face(Joint.LEFT_KNEE, loose, HUMAN, is_now=False).state is GaugeState.ENOUGH
-    firm = state(0.4, 4, floor_deg=0.6, is_closed=True)
-    assert gauge_face(Joint.LEFT_KNEE, firm, PROSTHESIS, is_now=False).state is GaugeState.ENOUGH
-
-
-@pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.LEFT_ANKLE])
-def test_an_axis_that_is_only_uncertain_is_not_called_no_hinge(joint: Joint) -> None:
+def test_a_face_has_the_figures_rings_and_state_of_its_joint(snapshot: SnapshotAssertion) -> None:
+    """The axis of an ankle is found while walking: nothing here has judged it."""
+    knee, ankle = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
+    loose, firm = (state(0.4, 4, floor_deg=floor_deg, is_closed=True) for floor_deg in (6.0, 0.6))
     uncertain = state(11, 4, floor_deg=0.6, is_plateau=True)
-    assert gauge_face(joint, uncertain, PROSTHESIS, is_now=False).state is GaugeState.PLATEAU
+    plateau = state(3.8, 8, is_plateau=True)
+    assert {
+        "a knee has both rings, figures without floors": gauge_face(
+            knee, state(0.8, 6.2, is_closed=True), HUMAN, is_now=False
+        ),
+        "an ankle has its centre only": gauge_face(ankle, state(20, 18), HUMAN, is_now=False),
+        "of an ankle it is enough for the centre": gauge_face(ankle, state(20, 6, is_closed=True), HUMAN, is_now=False),
+        "of a knee for both": gauge_face(knee, state(20, 6, is_closed=True), HUMAN, is_now=False),
+        "a human knee": gauge_face(knee, state(1.0, 6), HUMAN, is_now=False),
+        "more is required of a prosthesis": gauge_face(knee, state(1.0, 6, floor_deg=0.15), PROSTHESIS, is_now=False),
+        "not known": gauge_face(knee, None, HUMAN, is_now=False),
+        "hardly known": gauge_face(knee, state(57, 250), HUMAN, is_now=False),
+        "a plateau keeps its figure and its open ring": gauge_face(knee, plateau, HUMAN, is_now=False),
+        "a plateau, once more": gauge_face(knee, plateau, HUMAN, is_now=True),
+        "a prosthesis that turns like no hinge": gauge_face(knee, loose, PROSTHESIS, is_now=False),
+        "a human knee may": gauge_face(knee, loose, HUMAN, is_now=False),
+        "a prosthesis that is a hinge": gauge_face(knee, firm, PROSTHESIS, is_now=False),
+        "an uncertain axis is no loose hinge": gauge_face(knee, uncertain, PROSTHESIS, is_now=False),
+        "nor one of an ankle": gauge_face(ankle, uncertain, PROSTHESIS, is_now=False),
+        "of an ankle's hinge nothing before its axis is known": gauge_face(
+            ankle, state(20, 4, floor_deg=6.0, is_closed=True), PROSTHESIS, is_now=False
+        ),
+    } == snapshot
 
 
-def test_of_an_ankles_hinge_nothing_is_stated_before_its_axis_is_known() -> None:
-    found = state(20, 4, floor_deg=6.0, is_closed=True)
-    assert gauge_face(Joint.LEFT_ANKLE, found, PROSTHESIS, is_now=False).state is GaugeState.CENTRE
-
-
-def test_a_gauge_is_reported_to_readers_of_screens(qtbot: QtBot) -> None:
-    gauge = Gauge(Joint.LEFT_KNEE)
-    qtbot.addWidget(gauge)
-    gauge.show_face(gauge_face(Joint.LEFT_KNEE, state(11, 34), HUMAN, is_now=True))
-    assert gauge.accessibleName() == (
-        "Left knee, axis 11°, under 1.5° required, centre 34 mm, under 10 mm required, move now"
-    )
-    gauge.show_face(GaugeFace(GaugeState.ABSENT, note="No foot sensor: no left ankle angle."))
-    assert gauge.accessibleName() == "Left knee, No foot sensor: no left ankle angle."
-
-
-def test_an_ankles_gauge_shows_readers_of_screens_what_it_judges(qtbot: QtBot) -> None:
-    stated = {}
-    for joint in (Joint.LEFT_ANKLE, Joint.LEFT_KNEE):
+def test_a_gauge_is_reported_to_readers_of_screens(qtbot: QtBot, snapshot: SnapshotAssertion) -> None:
+    def received(joint: Joint, face: GaugeFace) -> str:
         gauge = Gauge(joint)
         qtbot.addWidget(gauge)
-        gauge.show_face(gauge_face(joint, state(1, 6, is_closed=True), HUMAN, is_now=False))
-        stated[joint] = gauge.accessibleName()
-    assert stated[Joint.LEFT_ANKLE] == (
-        "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm required, Enough movement for the centre"
-    )
-    assert stated[Joint.LEFT_KNEE] == (
-        "Left knee, axis 1.0°, under 1.5° required, centre 6.0 mm, under 10 mm required, Enough movement"
-    )
+        gauge.show_face(face)
+        return gauge.accessibleName()
+
+    enough = state(1, 6, is_closed=True)
+    knee, ankle = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
+    nothing = gauge_face(knee, None, HUMAN, is_now=False)
+    assert {
+        "now": received(knee, gauge_face(knee, state(11, 34), HUMAN, is_now=True)),
+        "absent": received(knee, GaugeFace(GaugeState.ABSENT, note="No foot sensor: no left ankle angle.")),
+        "an ankle states what is judged of it": received(ankle, gauge_face(ankle, enough, HUMAN, is_now=False)),
+        "a knee": received(knee, gauge_face(knee, enough, HUMAN, is_now=False)),
+        "its sensor is elsewhere": received(
+            knee, replace(nothing, state=GaugeState.NEEDS, note="Needs the left shank sensor")
+        ),
+    } == snapshot
 
 
 class Recorder(QPainter):
@@ -232,11 +188,3 @@ def test_words_never_enter_the_ring(
         inside = {text for text, box in Recorder.written if text and box.intersects(ring)}
         figure = {"1.4°", "23 mm"}
         assert inside == figure, shown
-
-
-def test_a_joint_whose_sensor_is_elsewhere_states_what_it_needs(qtbot: QtBot) -> None:
-    gauge = Gauge(Joint.LEFT_KNEE)
-    qtbot.addWidget(gauge)
-    nothing = gauge_face(Joint.LEFT_KNEE, None, HUMAN, is_now=False)
-    gauge.show_face(replace(nothing, state=GaugeState.NEEDS, note="Needs the left shank sensor"))
-    assert gauge.accessibleName().endswith("Needs the left shank sensor")

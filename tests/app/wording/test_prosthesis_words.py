@@ -1,6 +1,7 @@
 """A prosthesis is named by what is stated of it, and by its side alone where nothing else is."""
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.editing.words import field_word, value_words
 from app.storage.edited_fields import patient_fields
@@ -16,28 +17,17 @@ TRANSFEMORAL = Prosthesis(AmputationLevel.TRANSFEMORAL, KneeKind.FLUID_CONTROLLE
 STATED = Patient(birth_year=1960, sex="female", prosthetic_side="left", prostheses={Side.LEFT: TRANSTIBIAL})
 
 
-@pytest.mark.parametrize(
-    ("one", "english", "german"),
-    [
-        (
-            TRANSTIBIAL,
-            "transtibial prosthesis left, energy-storing foot",
-            "Unterschenkelprothese links, energierückgebender Fuß",
-        ),
-        (
-            TRANSFEMORAL,
-            "transfemoral prosthesis left, fluid-controlled knee, SACH foot",
-            "Oberschenkelprothese links, fluidgesteuertes Kniegelenk, SACH-Fuß",
-        ),
-        (Prosthesis(foot=FootKind.SACH), "prosthesis left, SACH foot", "Prothese links, SACH-Fuß"),
-        (Prosthesis(AmputationLevel.PARTIAL_FOOT), "partial foot prosthesis left", "Teilfußprothese links"),
-    ],
-)
-def test_a_prosthesis_is_named_by_its_level_then_knee_and_foot(one: Prosthesis, english: str, german: str) -> None:
-    assert prosthesis_words(Side.LEFT, one) == english
-    use_language("de")
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_prosthesis_is_named_by_its_level_then_knee_and_foot(language: str, snapshot: SnapshotAssertion) -> None:
+    one_by_one = {
+        "foot": TRANSTIBIAL,
+        "knee and foot": TRANSFEMORAL,
+        "no level": Prosthesis(foot=FootKind.SACH),
+        "nothing but its level": Prosthesis(AmputationLevel.PARTIAL_FOOT),
+    }
+    use_language(language)
     try:
-        assert prosthesis_words(Side.LEFT, one) == german
+        assert {case: prosthesis_words(Side.LEFT, one) for case, one in one_by_one.items()} == snapshot
     finally:
         use_language("en")
 
@@ -55,20 +45,27 @@ def test_every_kind_has_words_of_its_own(level: AmputationLevel, language: str) 
         use_language("en")
 
 
-def test_both_sides_are_named_once_one_of_them_is_stated() -> None:
-    both = Patient(prosthetic_side="both", prostheses={Side.RIGHT: TRANSFEMORAL})
-    right = "transfemoral prosthesis right, fluid-controlled knee, SACH foot"
-    assert worn_words(both) == ("prosthesis left", right)
-    assert worn_words(both, is_whole=False) == ("prosthesis left", "transfemoral prosthesis right")
-    assert worn_words(Patient(prosthetic_side="both", prostheses={Side.RIGHT: NOT_STATED})) == ()
-    assert worn_words(Patient(prosthetic_side="none", prostheses={Side.RIGHT: TRANSFEMORAL})) == ()
-
-
-def test_a_patient_is_listed_by_the_level_and_by_the_side_where_it_is_not_stated() -> None:
-    assert person(STATED) == "1960, female · transtibial prosthesis left"
-    assert about_and_device(STATED) == "1960, female · transtibial prosthesis left"
-    assert person(Patient(prosthetic_side="left")) == "left prosthetic"
-    assert person(Patient(affected_side="left", prostheses={Side.LEFT: TRANSTIBIAL})) == "left affected"
+def test_a_patient_is_listed_by_what_is_worn_and_by_the_side_where_that_is_not_stated(
+    snapshot: SnapshotAssertion,
+) -> None:
+    right, unstated = {Side.RIGHT: TRANSFEMORAL}, {Side.RIGHT: NOT_STATED}
+    patients = {
+        "left": STATED,
+        "both, the right one is stated": Patient(prosthetic_side="both", prostheses=right),
+        "both, neither is stated": Patient(prosthetic_side="both", prostheses=unstated),
+        "none is worn": Patient(prosthetic_side="none", prostheses=right),
+        "the side alone": Patient(prosthetic_side="left"),
+        "affected": Patient(affected_side="left", prostheses={Side.LEFT: TRANSTIBIAL}),
+    }
+    assert {
+        case: {
+            "worn": worn_words(one),
+            "in short": worn_words(one, is_whole=False),
+            "listed": person(one),
+            "with device": about_and_device(one),
+        }
+        for case, one in patients.items()
+    } == snapshot
 
 
 def test_who_is_asked_between_two_prostheses_reads_both_in_words() -> None:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.summary.visits import condition_in_words
 from app.wording.patients import aids_in_words
@@ -33,36 +34,35 @@ def called(*recordings: Recording) -> list[str]:
     return [str(name) for name in shown_names(recordings).values()]
 
 
-def test_a_walk_is_called_by_letter_and_condition() -> None:
-    assert called(walk(1, "Barefoot"), walk(2, "Shoes")) == ["A Barefoot", "B Shoes"]
+def returned(number: int, condition: str, to: str, since: str = "Alignment B") -> Recording:
+    return replace(walk(number, condition), alignment=AlignmentChange(since, (), returns_to=to))
 
 
-def test_from_the_second_on_walks_of_one_condition_are_numbered_behind_its_letter() -> None:
-    walks = walk(1, "Barefoot"), walk(2, "Shoes"), walk(3, "Barefoot"), walk(4, "Barefoot")
-    assert called(*walks) == ["A Barefoot", "B Shoes", "A2 Barefoot", "A3 Barefoot"]
-    assert list(condition_letters(walks).values()) == ["A", "B", "A", "A"]
-
-
-def test_sensors_that_were_strapped_again_begin_a_letter() -> None:
-    walks = walk(1, "Barefoot"), walk(2, "Barefoot", is_restrapped_before=True), walk(3, "Barefoot")
-    assert called(*walks) == ["A Barefoot", "B Barefoot", "B2 Barefoot"]
-
-
-def test_what_is_discarded_has_no_letter_and_no_number() -> None:
-    walks = walk(1, "Barefoot", is_kept=False), walk(2, "Shoes"), walk(3, "Shoes", is_kept=False), walk(4, "Shoes")
-    assert called(*walks) == ["Barefoot", "A Shoes", "Shoes", "A2 Shoes"]
-
-
-def test_a_walk_without_a_condition_is_called_by_its_own_name_and_takes_a_letter() -> None:
-    names = shown_names([walk(1), walk(2, "Shoes")])
-    assert (str(names["walk 1"]), names["walk 1"].letter) == ("walk 1", "A")
-    assert str(names["walk 2"]) == "B Shoes"
-
-
-def test_other_recordings_have_no_letter() -> None:
+def test_a_walk_is_called_by_letter_and_condition(snapshot: SnapshotAssertion) -> None:
     standing = Recording("standing", RecordingKind.STANDING, "", {})
     motion = Recording("free motion 2", RecordingKind.FREE_MOTION, "", {})
-    assert called(standing, motion, walk(1, "Shoes")) == ["standing", "free motion 2", "A Shoes"]
+    excluded = walk(1, "Barefoot", is_kept=False), walk(3, "Shoes", is_kept=False)
+    again = walk(1, "Alignment A"), walk(2, "Alignment B"), returned(3, "Alignment A again", "Alignment A")
+    four = walk(1, "Barefoot"), walk(2, "Shoes"), walk(3, "Barefoot"), walk(4, "Barefoot")
+    walks = {
+        "two conditions": (walk(1, "Barefoot"), walk(2, "Shoes")),
+        "from the second on they are numbered behind the letter": four,
+        "strapped again": (walk(1, "Barefoot"), walk(2, "Barefoot", is_restrapped_before=True), walk(3, "Barefoot")),
+        "excluded: no letter, no number": (excluded[0], walk(2, "Shoes"), excluded[1], walk(4, "Shoes")),
+        "without a condition: its own name": (walk(1), walk(2, "Shoes")),
+        "other recordings have no letter": (standing, motion, walk(1, "Shoes")),
+        "a return has its letter and the next number": again,
+        "a second return": (
+            *again,
+            walk(4, "Alignment C"),
+            returned(5, "Alignment A again 2", "Alignment A", "Alignment C"),
+        ),
+        "what only sounds like a return": (walk(1, "Alignment A"), walk(2, "Alignment A again")),
+    }
+    assert {case: called(*those) for case, those in walks.items()} == snapshot
+    assert shown_names([walk(1)])["walk 1"].letter == "A"
+    assert list(condition_letters(four).values()) == ["A", "B", "A", "A"]
+    assert list(condition_letters(again).values()) == ["A", "B", "A"]
 
 
 def test_no_two_kept_walks_are_called_the_same_when_letters_have_run_out() -> None:
@@ -128,22 +128,6 @@ def test_aids_are_read_in_german_and_others_as_typed() -> None:
     assert aids_in_words("shoes, stick, AFO, rollator") == "Schuhe, Stock, Unterschenkelorthese, rollator"
     use_language("en")
     assert aids_in_words("shoes, AFO, rollator") == "shoes, AFO, rollator"
-
-
-def returned(number: int, condition: str, to: str, since: str = "Alignment B") -> Recording:
-    return replace(walk(number, condition), alignment=AlignmentChange(since, (), returns_to=to))
-
-
-def test_what_returns_to_an_alignment_has_its_letter_and_the_next_number() -> None:
-    walks = walk(1, "Alignment A"), walk(2, "Alignment B"), returned(3, "Alignment A again", "Alignment A")
-    assert called(*walks) == ["A Alignment A", "B Alignment B", "A2 Alignment A again"]
-    assert list(condition_letters(walks).values()) == ["A", "B", "A"]
-    more = *walks, walk(4, "Alignment C"), returned(5, "Alignment A again 2", "Alignment A", "Alignment C")
-    assert called(*more)[3:] == ["C Alignment C", "A3 Alignment A again 2"]
-
-
-def test_what_only_sounds_like_a_return_has_a_letter_of_its_own() -> None:
-    assert called(walk(1, "Alignment A"), walk(2, "Alignment A again")) == ["A Alignment A", "B Alignment A again"]
 
 
 @pytest.mark.parametrize(
