@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.exports.fhir_bundle import bundle
 from app.exports.goals_csv import GOALS, HEADER, goal_figures, goal_rows
@@ -146,36 +147,25 @@ def test_what_is_reached_in_every_condition_is_stated_once_and_the_surest_first(
     assert reached_at(goals, course((walked(knee_deg=30.0, speed_m_s=0.4), "shoes"))) == ()
 
 
-def test_a_sentence_states_goal_value_error_standing_and_how_often_it_is_so() -> None:
+def test_a_sentence_states_goal_value_error_standing_and_how_often_it_is_so(snapshot: SnapshotAssertion) -> None:
     """An error of 9.2° is of two means, so that one has an SD of 3.3°: 1° is 0.30 of it, which 62 of 100 are below."""
-    stated = {
-        value: goal_sentence(GoalFigure(knee(50.0), value, 9.2, Verdict.READ)) for value in (40.0, 49.0, 51.0, 60.0)
-    }
-    assert stated == {
-        40.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 40.0°, not reached; the "
-        "difference is beyond measurement error (±9.2°). Fewer than 1 of 10 such measurements are at the goal.",
-        49.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 49.0°, not reached; the "
-        "difference is within measurement error (±9.2°). 4 of 10 such measurements are at the goal.",
-        51.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 51.0°, reached; the "
-        "difference is within measurement error (±9.2°). 6 of 10 such measurements are at the goal.",
-        60.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 60.0°, reached; the "
-        "difference is beyond measurement error (±9.2°). More than 9 of 10 such measurements are at the goal.",
-    }
+    assert {
+        f"at least 50°, measured {value}°": goal_sentence(GoalFigure(knee(50.0), value, 9.2, Verdict.READ))
+        for value in (40.0, 49.0, 51.0, 60.0)
+    } == snapshot
 
 
-def test_goals_are_called_by_whose_they_are_and_by_their_limit() -> None:
-    apart = Goal(STANCE, GoalOf.BETWEEN, 2.5, DAY, is_at_most=True)
-    right = Goal(STANCE, GoalOf.RIGHT, 62.0, DAY, is_at_most=True)
-    speed = Goal(SPEED, GoalOf.WALK, 1.2, DAY)
-    assert [goal_mark(goal) for goal in (apart, right, speed, knee(55.0))] == [
-        "goal ±2.5\u00a0%",
-        "goal R ≤62\u00a0%",
-        "goal 1.20\u00a0m/s",
-        "goal L 55°",
-    ]
-    assert required(apart) == "difference at most 2.5\N{NO-BREAK SPACE}%"
-    assert goal_in_words(right) == "Stance, right: at most 62\u00a0%"
-    assert goal_in_words(speed) == "Walking speed: at least 1.20\u00a0m/s"
+def test_goals_are_called_by_whose_they_are_and_by_their_limit(snapshot: SnapshotAssertion) -> None:
+    goals = {
+        "between the legs": Goal(STANCE, GoalOf.BETWEEN, 2.5, DAY, is_at_most=True),
+        "of a leg, at most": Goal(STANCE, GoalOf.RIGHT, 62.0, DAY, is_at_most=True),
+        "of the walk": Goal(SPEED, GoalOf.WALK, 1.2, DAY),
+        "of a leg": knee(55.0),
+    }
+    assert {
+        case: {"mark": goal_mark(goal), "required": required(goal), "in words": goal_in_words(goal)}
+        for case, goal in goals.items()
+    } == snapshot
     assert spoken_value("cadence_steps_min", "104") == "104 steps per minute"
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from string import Formatter
 
 import pytest
+from syrupy.assertion import SnapshotAssertion
 
 from app.wording.body import name_of
 from app.wording.findings import NAMES, SENTENCES, place, sentence
@@ -86,20 +87,21 @@ def test_what_concerns_the_whole_session_names_no_place() -> None:
     assert sentence(Finding("simulated", Severity.INFO, "session")).startswith("These data are simulated.")
 
 
-def test_a_joint_among_the_numbers_is_put_into_words() -> None:
-    reported = sentence(Finding("missing_site", Severity.INFO, "left_foot", {"joint": "left_ankle"}))
-    assert reported == "L foot: No sensor was worn here. There are no left ankle angles."
-
-
-def test_a_finding_without_a_sentence_is_still_reported_with_its_figures() -> None:
-    reported = sentence(Finding("strap_slipped", Severity.GRAVE, "right_shank", {"at_s": 41.0}))
-    assert reported == "R shank: strap slipped at_s 41.0."
-
-
-def test_a_sentence_that_lacks_its_figure_is_reported_by_its_key() -> None:
-    assert sentence(Finding("gaps", Severity.INFO, "", {"count": 2})) == "Gaps count 2."
-    assert sentence(Finding("clipped", Severity.INFO, "", {"percent": "many"})) == "Clipped percent many."
-    assert sentence(Finding("clipped", Severity.INFO, "", {"percent": math.nan})) == "Clipped."
+def test_a_finding_is_stated_with_its_figures_whatever_they_are(snapshot: SnapshotAssertion) -> None:
+    at_s, strides = {"at_s": 41.0}, {"left": 4, "right": 9, "wanted": 10}
+    info, walk = Severity.INFO, "walk 1"
+    findings = {
+        "a joint among the numbers": Finding("missing_site", info, "left_foot", {"joint": "left_ankle"}),
+        "no sentence: its key and its figures": Finding("strap_slipped", Severity.GRAVE, "right_shank", at_s),
+        "a figure is missing": Finding("gaps", info, "", {"count": 2}),
+        "a figure is none": Finding("clipped", info, "", {"percent": "many"}),
+        "a figure is unknown": Finding("clipped", info, "", {"percent": math.nan}),
+        "a column that is named as a reason": Finding("unknown_column", info, "", {"name": "stop"}),
+        "too few strides for a spread": Finding("no_spread", info, walk, strides),
+        "no stride is used": Finding("strides_all_left_out", info, walk, {"count": 11, "stop": 3, "turn": 8}),
+        "no peak": Finding("no_peak", info, walk, {"peak": "ankle_push_off_plantarflexion"}),
+    }
+    assert {case: sentence(finding) for case, finding in findings.items()} == snapshot
 
 
 def test_the_part_of_the_body_comes_before_the_recording() -> None:
@@ -124,34 +126,3 @@ def test_every_reason_and_every_peak_has_its_words() -> None:
     assert set(NAMES["reason"]) == {str(reason) for reason in Reason if reason is not Reason.USED}
     assert set(NAMES["peak"]) == {window.name for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
     assert set(NAMES["side"]) == set(Side)
-
-
-def test_a_column_that_is_named_as_a_reason_keeps_its_name() -> None:
-    assert "“stop”" in sentence(Finding("unknown_column", Severity.INFO, "", {"name": "stop"}))
-
-
-@pytest.mark.parametrize(
-    ("key", "numbers", "stated"),
-    [
-        (
-            "no_spread",
-            {"left": 4, "right": 9, "wanted": 10},
-            "Walk 1: There are only 4 left and 9 right strides; a standard deviation needs 10. "
-            "Record another walk, or continue without a standard deviation.",
-        ),
-        (
-            "strides_all_left_out",
-            {"count": 11, "stop": 3, "turn": 8},
-            "Walk 1: All detected strides (11) were excluded: 8 turning, 3 stopping. "
-            "There are no averages; correct this and record the walk again.",
-        ),
-        (
-            "no_peak",
-            {"peak": "ankle_push_off_plantarflexion"},
-            "Walk 1: No value for peak plantarflexion, push-off is reported: "
-            "the angle has no turning point in that phase.",
-        ),
-    ],
-)
-def test_what_a_walk_lacks_is_stated_in_words(key: str, numbers: dict[str, int | str], stated: str) -> None:
-    assert sentence(Finding(key, Severity.INFO, "walk 1", numbers)) == stated
