@@ -4,6 +4,7 @@ import csv
 import datetime
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -53,7 +54,7 @@ from tests.simulated import analysis_of, session_of
 DIGITS = 1e-5
 
 
-@pytest.fixture(scope="module")
+@cache
 def session() -> Session:
     """Three walks of two conditions; rigid sensors, so that no strap seems to slip."""
     walks = (Walk(strides=13), Walk("walk 2", strides=13), Walk("walk 3", strides=13, speed_m_s=0.9))
@@ -65,32 +66,32 @@ def session() -> Session:
     )
 
 
-@pytest.fixture(scope="module")
-def analysis(session: Session) -> Analysis:
-    return analysis_of(session)
+@cache
+def analysis() -> Analysis:
+    return analysis_of(session())
 
 
 @pytest.fixture
-def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
-    return conditions_of(analysis, session.recordings)
+def parts() -> tuple[Part, ...]:
+    return conditions_of(analysis(), session().recordings)
 
 
 @pytest.fixture
-def page(shared_page: ResultPage, analysis: Analysis, session: Session) -> ResultPage:
+def page(shared_page: ResultPage) -> ResultPage:
     """The walks of the visit compared, whatever a test before compared."""
     page = shared_page
     page.resize(1064, 672)
     page.set_room(1064, 672)
     page.compare.view.choose(PLOT)
     page.set_has_visits(False)
-    show_walks_compared(page, analysis, session)
+    show_walks_compared(page)
     page.compare.kinds.setCurrentIndex(0)
     page.compare.bases.setCurrentIndex(0)
     return page
 
 
-def show_walks_compared(page: ResultPage, analysis: Analysis, session: Session) -> None:
-    page.show_visit(AnalysedVisit(session, analysis))
+def show_walks_compared(page: ResultPage) -> None:
+    page.show_visit(AnalysedVisit(session(), analysis()))
     page.leave_behind()
     page.show()
     page.view.choose(COMPARE)
@@ -126,10 +127,10 @@ def test_walks_of_one_condition_are_taken_together(parts: tuple[Part, ...]) -> N
 
 
 def test_a_walk_is_called_in_the_boxes_of_results_as_its_condition_is_in_the_comparison(
-    result_page: ResultPage, analysis: Analysis, session: Session
+    result_page: ResultPage,
 ) -> None:
     page = result_page
-    page.show_visit(AnalysedVisit(session, analysis))
+    page.show_visit(AnalysedVisit(session(), analysis()))
     offered = [page.recordings.itemText(row) for row in range(page.recordings.count())]
     assert offered == ["free motion", "A barefoot", "A2 barefoot", "B AFO"]
     assert [page.recordings.itemData(row) for row in range(4)] == ["free motion", "walk 1", "walk 2", "walk 3"]
@@ -140,29 +141,25 @@ def test_a_walk_is_called_in_the_boxes_of_results_as_its_condition_is_in_the_com
     assert [page.thin.itemText(row) for row in walks] == ["A barefoot", "A2 barefoot"]
 
 
-def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_name(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_name(page: ResultPage) -> None:
     page.recordings.setCurrentIndex(page.recordings.findData("walk 3"))
-    renamed = (replace(one, condition="stick") if one.name == "walk 3" else one for one in session.recordings)
-    page.show_visit(AnalysedVisit(replace(session, recordings=tuple(renamed)), analysis))
+    renamed = (replace(one, condition="stick") if one.name == "walk 3" else one for one in session().recordings)
+    page.show_visit(AnalysedVisit(replace(session(), recordings=tuple(renamed)), analysis()))
     assert (page.recordings.currentData(), page.recordings.currentText()) == ("walk 3", "B stick")
     assert page.whole.charts.accessibleName() == "Knee and ankle angles of B stick"
 
 
 @pytest.mark.parametrize("condition", ["Barefoot", "Own shoes with insoles of four millimetres"])
-def test_in_a_small_window_no_view_of_a_prosthetic_patient_scrolls_to_and_fro(
-    page: ResultPage, analysis: Analysis, session: Session, condition: str
-) -> None:
+def test_in_a_small_window_no_view_of_a_prosthetic_patient_scrolls_to_and_fro(page: ResultPage, condition: str) -> None:
     """With the longest words, what is compared included; a bar that scrolls up and down takes its part of the width."""
     width, bar = 896, 12  # of a window of 960 x 600, beside the rail
-    reported = (replace(one, condition=condition if one.name != "walk 3" else "AFO") for one in session.recordings)
-    patient = replace(session.patient, prosthetic_side="left", affected_side="left")
-    visit = replace(session, recordings=tuple(reported), patient=patient)
+    reported = (replace(one, condition=condition if one.name != "walk 3" else "AFO") for one in session().recordings)
+    patient = replace(session().patient, prosthetic_side="left", affected_side="left")
+    visit = replace(session(), recordings=tuple(reported), patient=patient)
     page.set_room(700, 472)  # what was narrower before
     page.set_room(width, 472)
     page.set_has_visits(True)
-    page.show_visit(AnalysedVisit(visit, replace(analysis, affected_side=Side.LEFT)))
+    page.show_visit(AnalysedVisit(visit, replace(analysis(), affected_side=Side.LEFT)))
     shown = []
     for view in (ANSWER, COMPARE, WHOLE, STRIDES):
         page.view.choose(view)
@@ -193,17 +190,15 @@ def test_curves_differences_and_table_can_be_reached_in_a_window_of_any_size(pag
         assert not choice.isVisible(), widths
 
 
-def test_a_letter_stays_its_conditions_where_another_has_no_strides(analysis: Analysis, session: Session) -> None:
-    walked = tuple(one for one in analysis.recordings if one.name not in ("walk 1", "walk 2"))
-    (part,) = conditions_of(replace(analysis, recordings=walked), session.recordings)
+def test_a_letter_stays_its_conditions_where_another_has_no_strides() -> None:
+    walked = tuple(one for one in analysis().recordings if one.name not in ("walk 1", "walk 2"))
+    (part,) = conditions_of(replace(analysis(), recordings=walked), session().recordings)
     assert (part.letter, part.name) == ("B", "AFO")
 
 
-def test_walks_after_strapping_again_are_of_another_part_and_judged_as_between_visits(
-    analysis: Analysis, session: Session
-) -> None:
-    reported = tuple(replace(one, is_restrapped_before=one.name == "walk 2") for one in session.recordings)
-    parts = conditions_of(analysis, reported)
+def test_walks_after_strapping_again_are_of_another_part_and_judged_as_between_visits() -> None:
+    reported = tuple(replace(one, is_restrapped_before=one.name == "walk 2") for one in session().recordings)
+    parts = conditions_of(analysis(), reported)
     assert [part.attachment for part in parts] == [0, 1, 1]
     found = Comparison(Contrast.CONDITIONS, parts)
     kinds = {found.error_kind(part) for part in found.others}
@@ -316,11 +311,11 @@ def test_another_starting_point_turns_the_differences(page: ResultPage) -> None:
 
 
 def test_visits_are_asked_for_once_and_reported_when_there_are_none(
-    qtbot: QtBot, result_page: ResultPage, analysis: Analysis, session: Session, parts: tuple[Part, ...]
+    qtbot: QtBot, result_page: ResultPage, parts: tuple[Part, ...]
 ) -> None:
     page, compare = result_page, result_page.compare
     compare.set_has_visits(True)
-    show_walks_compared(page, analysis, session)
+    show_walks_compared(page)
     with qtbot.waitSignal(compare.visits_requested):
         choose(page, Contrast.VISITS)
     assert compare.nothing.isVisible()
@@ -333,21 +328,22 @@ def test_visits_are_asked_for_once_and_reported_when_there_are_none(
 
 
 def walked(
-    visit: str, analysis: Analysis, session: Session, day: datetime.date | None = None, **conditions: str
+    visit: str, found: Analysis | None = None, day: datetime.date | None = None, **conditions: str
 ) -> WalkedVisit:
     """A visit whose walks 1 to 3 had these conditions; a walk that is not named was not recorded."""
     names = {name.replace("_", " "): condition for name, condition in conditions.items()}
-    recordings = [replace(one, condition=names[one.name]) for one in session.recordings if one.name in names]
-    found = replace(analysis, recordings=tuple(one for one in analysis.recordings if one.name in names))
+    recordings = [replace(one, condition=names[one.name]) for one in session().recordings if one.name in names]
+    found = found or analysis()
+    found = replace(found, recordings=tuple(one for one in found.recordings if one.name in names))
     return WalkedVisit(visit, found, recordings, day)
 
 
-def test_visits_are_compared_condition_by_condition_and_never_pooled(analysis: Analysis, session: Session) -> None:
+def test_visits_are_compared_condition_by_condition_and_never_pooled() -> None:
     """Alignment B of the first visit is no part of what A or C is reported against."""
     visits = [
-        walked("May", analysis, session, walk_1="A", walk_2="A", walk_3="B"),
-        walked("June", analysis, session, walk_1="C"),
-        walked("July", analysis, session, walk_1="C", walk_2="A", walk_3="D"),
+        walked("May", walk_1="A", walk_2="A", walk_3="B"),
+        walked("June", walk_1="C"),
+        walked("July", walk_1="C", walk_2="A", walk_3="D"),
     ]
     found = {one.condition: one for one in visits_by_condition(visits)}
     reported = {
@@ -361,25 +357,21 @@ def test_visits_are_compared_condition_by_condition_and_never_pooled(analysis: A
     assert {condition: one.without for condition, one in found.items()} == {"C": ("May",), "A": ("June",)}
 
 
-def test_walks_without_a_condition_are_reported_against_such_only_and_not_taken_together(
-    analysis: Analysis, session: Session
-) -> None:
-    stated = walked("May", analysis, session, walk_1="walk 1")  # as a condition of that name
-    unstated = walked("June", analysis, session, walk_1="", walk_2="")
+def test_walks_without_a_condition_are_reported_against_such_only_and_not_taken_together() -> None:
+    stated = walked("May", walk_1="walk 1")  # as a condition of that name
+    unstated = walked("June", walk_1="", walk_2="")
     assert visits_by_condition([stated, unstated]) == ()
     (only,) = visits_by_condition([unstated, unstated])
     assert [[walk.name for walk in part.walks] for part in only.parts] == [["walk 2"], ["walk 2"]]
 
 
-def test_one_condition_after_the_other_is_chosen_on_the_screen(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_one_condition_after_the_other_is_chosen_on_the_screen(page: ResultPage) -> None:
     compare = page.compare
     compare_visits(
         page,
-        walked("May", analysis, session, walk_1="A", walk_3="B"),
-        walked("June", analysis, session, walk_1="B"),
-        walked("July", analysis, session, walk_1="A", walk_2="B"),
+        walked("May", walk_1="A", walk_3="B"),
+        walked("June", walk_1="B"),
+        walked("July", walk_1="A", walk_2="B"),
     )
     words = [compare.kinds.itemText(k) for k in range(compare.kinds.count())]
     assert words[1:3] == ["Visits, A", "Visits, B"]
@@ -394,10 +386,13 @@ def test_one_condition_after_the_other_is_chosen_on_the_screen(
     assert "Not compared" not in compare.conclusion.text()
 
 
-def test_any_conditions_of_any_visits_can_be_chosen(page: ResultPage, analysis: Analysis, session: Session) -> None:
+def test_any_conditions_of_any_visits_can_be_chosen(page: ResultPage) -> None:
     """The first and the last to begin with; between visits by the error of a new strapping and another day."""
     compare = page.compare
-    visits = walked("May", analysis, session, walk_1="A", walk_3="B"), walked("July", analysis, session, walk_1="C")
+    visits = (
+        walked("May", walk_1="A", walk_3="B"),
+        walked("July", walk_1="C"),
+    )
     compare_visits(page, *visits)
     choose(page, Contrast.CHOSEN)
     assert compare.comparison is not None
@@ -410,10 +405,8 @@ def test_any_conditions_of_any_visits_can_be_chosen(page: ResultPage, analysis: 
     assert {compare.comparison.error_kind(part) for part in compare.comparison.others} == {ComparisonKind.ATTACHED}
 
 
-def test_speed_cadence_and_stride_length_stand_first_and_are_judged(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    visits = walked("May", analysis, session, walk_1="A"), walked("July", analysis, session, walk_3="A")
+def test_speed_cadence_and_stride_length_stand_first_and_are_judged(page: ResultPage) -> None:
+    visits = walked("May", walk_1="A"), walked("July", walk_3="A")
     compare_visits(page, *visits)
     assert page.compare.comparison is not None
     _, rows = comparison_table(page.compare.comparison, 5)
@@ -426,12 +419,10 @@ def heads(page: ResultPage) -> list[str]:
     return [column.head.words for column in page.compare.card.table.cells.columns][2:]
 
 
-def test_visits_stand_under_their_days_and_changes_beside_their_error(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_visits_stand_under_their_days_and_changes_beside_their_error(page: ResultPage) -> None:
     """Walks of one visit have no day over them."""
     assert heads(page) == ["A", "B", "B \N{MINUS SIGN} A", "likely between"]
-    compare_visits(page, *(walked(day, analysis, session, walk_1="A") for day in ("3 May", "1 June", "5 July")))
+    compare_visits(page, *(walked(day, walk_1="A") for day in ("3 May", "1 June", "5 July")))
     days = ["1 3 May", "2 1 June", "3 5 July"]
     assert heads(page) == [*days, "trend; grey: error", "3 \N{MINUS SIGN} 1", "likely between"]
     found = page.compare.comparison
@@ -445,11 +436,12 @@ def test_visits_stand_under_their_days_and_changes_beside_their_error(
     assert (reported[1] == "\N{EN DASH}") is not (cadence.error > 0)
 
 
-def test_visits_without_a_common_condition_are_not_compared_and_that_is_stated(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_visits_without_a_common_condition_are_not_compared_and_that_is_stated(page: ResultPage) -> None:
     compare = page.compare
-    visits = walked("May", analysis, session, walk_1="A", walk_2=""), walked("July", analysis, session, walk_1="B")
+    visits = (
+        walked("May", walk_1="A", walk_2=""),
+        walked("July", walk_1="B"),
+    )
     compare_visits(page, *visits)
     assert compare.nothing.text() == (
         "This visit shares no condition with an earlier visit, so the visits are not compared. "
@@ -470,43 +462,39 @@ def test_no_word_is_cut(page: ResultPage) -> None:
                 assert words_cut(page) == [], (room, view)
 
 
-def shown(page: ResultPage, analysis: Analysis, session: Session, kind: Contrast) -> str:
+def shown(page: ResultPage, found: Analysis, kind: Contrast) -> str:
     """Show an analysis compared in a way, and give what is concluded."""
-    page.show_visit(AnalysedVisit(session, analysis))
+    page.show_visit(AnalysedVisit(session(), found))
     choose(page, kind)
     return page.compare.conclusion.text()
 
 
-def bent_more(analysis: Analysis, by_deg: float, joint: Joint = Joint.RIGHT_KNEE) -> Analysis:
+def bent_more(by_deg: float, joint: Joint = Joint.RIGHT_KNEE) -> Analysis:
     """With the range of one joint larger in every walk."""
     name = f"{'knee' if joint.is_knee else 'ankle'}_range_rad"
     recordings = []
-    for one in analysis.recordings:
+    for one in analysis().recordings:
         gait = dict(one.gait)
         if joint.side in gait:
             found = gait[joint.side]
             parameters = {**found.parameters, name: found.parameters[name] + np.deg2rad(by_deg)}
             gait[joint.side] = replace(found, parameters=parameters)
         recordings.append(replace(one, gait=gait))
-    return judged(replace(analysis, recordings=tuple(recordings)))
+    return judged(replace(analysis(), recordings=tuple(recordings)))
 
 
-def test_between_legs_only_what_is_worth_a_sentence_is_stated(
-    page: ResultPage, analysis: Analysis, session: Session, snapshot: SnapshotAssertion
-) -> None:
+def test_between_legs_only_what_is_worth_a_sentence_is_stated(page: ResultPage, snapshot: SnapshotAssertion) -> None:
     legs = {
-        "within error": analysis,
-        "the right knee bends 20° more": bent_more(analysis, 20.0),
-        "the right ankle bends 20° more": bent_more(analysis, 20.0, Joint.RIGHT_ANKLE),
-        "9.3°, and healthy people differ by 10.2": bent_more(analysis, 6.0),
+        "within error": analysis(),
+        "the right knee bends 20° more": bent_more(20.0),
+        "the right ankle bends 20° more": bent_more(20.0, Joint.RIGHT_ANKLE),
+        "9.3°, and healthy people differ by 10.2": bent_more(6.0),
     }
-    assert {case: shown(page, one, session, Contrast.SIDES) for case, one in legs.items()} == snapshot
+    assert {case: shown(page, one, Contrast.SIDES) for case, one in legs.items()} == snapshot
 
 
-def test_between_walks_only_what_is_worth_a_sentence_is_stated(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    page.show_visit(AnalysedVisit(session, analysis))
+def test_between_walks_only_what_is_worth_a_sentence_is_stated(page: ResultPage) -> None:
+    page.show_visit(AnalysedVisit(session(), analysis()))
     found = page.compare.comparison
     assert found is not None
     wording = [row for row in found.rows if row.is_reported and row.difference.is_worth_a_sentence]
@@ -522,19 +510,17 @@ def table_words(page: ResultPage) -> list[list[str]]:
     return [line.split("\t") for line in page.compare.card.table.as_text().split("\n")[1:]]
 
 
-def test_every_cell_of_the_table_states_leg_measure_and_part(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_every_cell_of_the_table_states_leg_measure_and_part(page: ResultPage) -> None:
     """Legs stand in a column of their own, where rows are of one of them."""
     cells, wording = page.compare.card.table.cells, Qt.ItemDataRole.AccessibleTextRole
-    shown(page, analysis, session, Contrast.CONDITIONS)
+    shown(page, analysis(), Contrast.CONDITIONS)
     assert not page.compare.card.table.isColumnHidden(0)
     length = 2  # the first row of a leg: speed and cadence are of both
     assert (cells.index(length, 0).data(), cells.index(length, 0).data(wording)) == ("L", "left")
     received = str(cells.index(length, 4).data(wording))
     assert received.startswith(f"L {cells.index(length, 1).data()}, B \N{MINUS SIGN} A: ")
     assert received.endswith(f": {cells.index(length, 4).data()}")
-    shown(page, analysis, session, Contrast.SIDES)
+    shown(page, analysis(), Contrast.SIDES)
     assert page.compare.card.table.isColumnHidden(0)
     assert str(cells.index(0, 2).data(wording)).startswith(f"{cells.index(0, 1).data()}, L: ")
     assert all(not line[0] for line in table_words(page))
@@ -555,17 +541,15 @@ def test_what_lies_beyond_its_error_is_marked_and_nothing_else(parts: tuple[Part
         assert (cell.weight == SEMIBOLD) is (mark is not Mark.NONE)
 
 
-def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    visits_shown(page, session, analysis, bent_more(analysis, 30.0, Joint.RIGHT_ANKLE))
+def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(page: ResultPage) -> None:
+    visits_shown(page, analysis(), bent_more(30.0, Joint.RIGHT_ANKLE))
     rows = {(side, name): cells for side, name, *cells in table_words(page)}
     ankle, knee = (rows["R", name] for name in ("Ankle range of motion", "Knee flexion, stance to swing"))
     assert any("\N{DAGGER}" in cell for cell in ankle)
     assert not any("\N{DAGGER}" in cell for cell in knee)
     assert "\N{DAGGER} based on a value" in page.compare.error.text()
     assert "sensor attachment" in page.compare.error.text()
-    shown(page, analysis, session, Contrast.CONDITIONS)
+    shown(page, analysis(), Contrast.CONDITIONS)
     assert "\N{DAGGER}" not in page.compare.error.text()
     reported = page.compare.error.text()
     for words in ("variation between strides", "drift within a walk", "variation between walks"):
@@ -576,14 +560,14 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     assert "\N{DAGGER}" not in "".join(stance)  # measured by ourselves
 
 
-def test_what_is_not_reported_is_in_no_comparison(page: ResultPage, analysis: Analysis, session: Session) -> None:
-    doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
-    shown(page, doubtful, session, Contrast.SIDES)
+def test_what_is_not_reported_is_in_no_comparison(page: ResultPage) -> None:
+    doubtful = recalibrated(analysis(), [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
+    shown(page, doubtful, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range of motion"][1:3] == ["not reported", "\N{EN DASH}"]
     assert rows["Ankle range of motion"][0] not in ("not reported", "\N{EN DASH}")
     assert "not reported" not in rows["Knee range of motion"]
-    shown(page, doubtful, session, Contrast.CONDITIONS)
+    shown(page, doubtful, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.RIGHT, JointKind.ANKLE]
     assert frame.chart.curves == ()
     assert "A: not reported. Sensor positions could not be confirmed" in frame.note
@@ -591,18 +575,16 @@ def test_what_is_not_reported_is_in_no_comparison(page: ResultPage, analysis: An
     assert "not reported" not in page.compare.frames[Side.LEFT, JointKind.ANKLE].note
 
 
-def test_two_strides_have_neither_a_curve_nor_a_toe_off(analysis: Analysis, session: Session) -> None:
-    part = conditions_of(with_few_strides(analysis, left=2), session.recordings)[0]
+def test_two_strides_have_neither_a_curve_nor_a_toe_off() -> None:
+    part = conditions_of(with_few_strides(analysis(), left=2), session().recordings)[0]
     few, enough = (part.curve(joint, is_about_mean=False) for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE))
     assert (few.is_known, few.is_few, math.isfinite(few.toe_off_percent)) == (False, True, False)
     assert (enough.is_known, enough.is_few, math.isfinite(enough.toe_off_percent)) == (True, False, True)
     assert enough.toe_off_label == part.letter
 
 
-def test_without_a_zero_curves_are_compared_about_their_mean(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    shown(page, recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE), session, Contrast.CONDITIONS)
+def test_without_a_zero_curves_are_compared_about_their_mean(page: ResultPage) -> None:
+    shown(page, recalibrated(analysis(), [Joint.LEFT_KNEE], zero=ZeroKind.NONE), Contrast.CONDITIONS)
     frame = page.compare.frames[Side.LEFT, JointKind.KNEE]
     assert [float(np.mean(curve.angle_deg)) for curve in frame.chart.curves] == [pytest.approx(0.0, abs=1e-9)] * 2
     assert "0° is the mean angle over the gait cycle." in frame.note
@@ -610,12 +592,10 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, JointKind.KNEE].note
 
 
-def test_a_change_counts_from_the_first_visit_that_can_be_read_and_states_so(
-    analysis: Analysis, session: Session
-) -> None:
-    gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
-    days = (("May", gated), ("June", analysis), ("July", analysis))
-    (visits,) = visits_by_condition([walked(name, found, session, walk_1="A") for name, found in days])
+def test_a_change_counts_from_the_first_visit_that_can_be_read_and_states_so() -> None:
+    gated = recalibrated(analysis(), [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
+    days = (("May", gated), ("June", analysis()), ("July", analysis()))
+    (visits,) = visits_by_condition([walked(name, found, walk_1="A") for name, found in days])
     found = Comparison(Contrast.VISITS, visits.parts)
     _, rows = comparison_table(found, 5)
     ranges = [row.cells for row in rows if row.cells[1].words == "Knee range of motion"]
@@ -629,12 +609,10 @@ def test_a_change_counts_from_the_first_visit_that_can_be_read_and_states_so(
     assert not any("from" in str(cell.words) for cell in of_range[Side.RIGHT])
 
 
-def visits_shown(page: ResultPage, session: Session, *analyses: Analysis) -> str:
+def visits_shown(page: ResultPage, *analyses: Analysis) -> str:
     """Show visits of these analyses under one condition, ten days apart, and give what is concluded."""
     days = [datetime.date(2026, 5, 1) + datetime.timedelta(days=10 * k) for k in range(len(analyses))]
-    compare_visits(
-        page, *(walked(str(day), one, session, day, walk_1="A") for day, one in zip(days, analyses, strict=True))
-    )
+    compare_visits(page, *(walked(str(day), one, day, walk_1="A") for day, one in zip(days, analyses, strict=True)))
     return page.compare.conclusion.text()
 
 
@@ -653,31 +631,27 @@ def measures(page: ResultPage) -> set[str]:
     return {row.cells[1].words for row in page.compare.card.table.cells.rows}
 
 
-def test_of_visits_the_change_to_the_latest_is_stated_and_marked(
-    page: ResultPage, analysis: Analysis, session: Session, snapshot: SnapshotAssertion
-) -> None:
+def test_of_visits_the_change_to_the_latest_is_stated_and_marked(page: ResultPage, snapshot: SnapshotAssertion) -> None:
     """Of ankles of 26.8 and 56.8° the error is 1.96 sqrt(2) 3.3 = 9.1 and chance, from another maker's sensors."""
-    bent, ankle = bent_more(analysis, 30.0), bent_more(analysis, 30.0, Joint.RIGHT_ANKLE)
-    few = with_few_strides(analysis, left=5, right=5)
+    bent, ankle = bent_more(30.0), bent_more(30.0, Joint.RIGHT_ANKLE)
+    few = with_few_strides(analysis(), left=5, right=5)
     visits = {
-        "a knee": (analysis, analysis, bent),
-        "a knee, gone at the latest": (analysis, bent, analysis),
-        "an ankle has its dagger": (analysis, analysis, ankle),
-        "an ankle, gone at the latest": (analysis, ankle, analysis),
-        "nothing of the latest is judged": (analysis, analysis, few),
-        "nothing of the one before is judged": (analysis, few, analysis),
+        "a knee": (analysis(), analysis(), bent),
+        "a knee, gone at the latest": (analysis(), bent, analysis()),
+        "an ankle has its dagger": (analysis(), analysis(), ankle),
+        "an ankle, gone at the latest": (analysis(), ankle, analysis()),
+        "nothing of the latest is judged": (analysis(), analysis(), few),
+        "nothing of the one before is judged": (analysis(), few, analysis()),
     }
-    found = {case: (visits_shown(page, session, *those), marked(page)) for case, those in visits.items()}
+    found = {case: (visits_shown(page, *those), marked(page)) for case, those in visits.items()}
     assert found == snapshot
     page.compare.chips.choose(["1"])
     page.compare.chips.turned.emit()
     assert page.compare.conclusion.text() == ""  # of one visit there is no change
 
 
-def test_from_the_latest_visit_as_base_the_one_before_is_reported(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    visits_shown(page, session, analysis, bent_more(analysis, 30.0), analysis)
+def test_from_the_latest_visit_as_base_the_one_before_is_reported(page: ResultPage) -> None:
+    visits_shown(page, analysis(), bent_more(30.0), analysis())
     found = page.compare.comparison
     assert found is not None
     assert any(row.exceeds for row in found.rows)  # as the picture of the differences shows in any case
@@ -687,18 +661,16 @@ def test_from_the_latest_visit_as_base_the_one_before_is_reported(
     assert marked(page) == [(Side.RIGHT, "Knee range of motion")]
 
 
-def test_the_conclusion_speaks_of_all_sentences_there_are(analysis: Analysis, session: Session) -> None:
-    (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in ("May", "July")])
+def test_the_conclusion_speaks_of_all_sentences_there_are() -> None:
+    (visits,) = visits_by_condition([walked(day, walk_1="A") for day in ("May", "July")])
     row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_reported)
     assert conclusion(["a", "b", "c", "d"], [row]) == ["a", "b", "c", "The table shows all differences."]
     assert conclusion(["a", "b", "c"], [row]) == ["a", "b", "c"]
 
 
-def test_the_trend_of_a_row_states_its_values_and_where_there_is_none(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
-    visits_shown(page, session, analysis, gated, analysis)
+def test_the_trend_of_a_row_states_its_values_and_where_there_is_none(page: ResultPage) -> None:
+    gated = recalibrated(analysis(), [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
+    visits_shown(page, analysis(), gated, analysis())
     trends = {
         (cell.side, row.cells[1].words): cell
         for row in page.compare.card.table.cells.rows
@@ -712,37 +684,33 @@ def test_the_trend_of_a_row_states_its_values_and_where_there_is_none(
     assert ", 2 –, 3 " in left.stated
     assert "–" not in trends[Side.RIGHT, "Knee flexion, stance to swing"].stated
     assert trends[None, "Walking speed, m/s"].band is not None
-    shown(page, analysis, session, Contrast.CONDITIONS)
+    shown(page, analysis(), Contrast.CONDITIONS)
     rows = page.compare.card.table.cells.rows
     assert not any(isinstance(cell, TrendCell) for row in rows for cell in row.cells)
 
 
-def test_between_visits_the_table_is_brief_until_all_is_asked_for(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_between_visits_the_table_is_brief_until_all_is_asked_for(page: ResultPage) -> None:
     card = page.compare.card
     page.compare.view.choose(TABLE)
-    visits_shown(page, session, analysis, analysis, analysis)
+    visits_shown(page, analysis(), analysis(), analysis())
     assert card.all_measures.isVisible()
     assert "Knee flexion, stance to swing" in measures(page)
     assert not {"Knee range of motion", "Ankle range of motion", "Peak knee flexion, swing"} & measures(page)
     card.all_measures.click()
     assert {"Knee range of motion", "Ankle range of motion", "Peak knee flexion, swing"} <= measures(page)
     card.all_measures.click()
-    visits_shown(page, session, analysis, analysis, bent_more(analysis, 30.0))
+    visits_shown(page, analysis(), analysis(), bent_more(30.0))
     assert "Knee range of motion" in measures(page)  # what is marked is never left out
     assert "Ankle range of motion" not in measures(page)
-    shown(page, analysis, session, Contrast.CONDITIONS)
+    shown(page, analysis(), Contrast.CONDITIONS)
     assert not card.all_measures.isVisible()
     assert "Ankle range of motion" in measures(page)
 
 
 @pytest.mark.parametrize("view", [PLOT, TABLE])
-def test_five_visits_are_shown_without_scrolling(
-    page: ResultPage, analysis: Analysis, session: Session, view: str
-) -> None:
+def test_five_visits_are_shown_without_scrolling(page: ResultPage, view: str) -> None:
     page.compare.view.choose(view)
-    visits_shown(page, session, analysis, analysis, analysis, analysis, bent_more(analysis, 30.0))
+    visits_shown(page, analysis(), analysis(), analysis(), analysis(), bent_more(30.0))
     QApplication.processEvents()
     page.resize(1064, 672)  # the answer, shown before, had asked for more
     QApplication.processEvents()
@@ -752,11 +720,9 @@ def test_five_visits_are_shown_without_scrolling(
     assert words_cut(page) == []
 
 
-def test_of_many_visits_the_base_and_the_latest_have_a_column_and_the_trend_has_all(
-    analysis: Analysis, session: Session
-) -> None:
+def test_of_many_visits_the_base_and_the_latest_have_a_column_and_the_trend_has_all() -> None:
     days = ("May", "June", "July", "August")
-    (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in days])
+    (visits,) = visits_by_condition([walked(day, walk_1="A") for day in days])
     found = Comparison(Contrast.VISITS, visits.parts)
     columns, rows = comparison_table(found, 3)
     names = ["1 May", "3 July", "4 August", "trend; grey: error", "4 \N{MINUS SIGN} 1", "likely between"]
@@ -778,15 +744,15 @@ def test_where_room_is_short_every_view_can_be_left_again(page: ResultPage) -> N
 
 
 @pytest.fixture
-def three(page: ResultPage, session: Session, analysis: Analysis) -> ResultPage:
+def three(page: ResultPage) -> ResultPage:
     """Three conditions, the last of which was changed from the first."""
     changed = AlignmentChange("A", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
     reported = {"walk 1": ("A", None), "walk 2": ("B", None), "walk 3": ("C", changed)}
     recordings = tuple(
         replace(one, condition=reported[one.name][0], alignment=reported[one.name][1]) if one.name in reported else one
-        for one in session.recordings
+        for one in session().recordings
     )
-    page.show_visit(AnalysedVisit(replace(session, recordings=recordings), analysis))
+    page.show_visit(AnalysedVisit(replace(session(), recordings=recordings), analysis()))
     return page
 
 

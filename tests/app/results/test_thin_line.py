@@ -2,6 +2,7 @@
 
 import datetime
 from dataclasses import replace
+from functools import cache
 from uuid import UUID
 
 import numpy as np
@@ -34,7 +35,7 @@ JULY, SEPTEMBER, NOW = (datetime.date(2026, month, 1) for month in (7, 9, 11))
 VISITS = (JULY, SEPTEMBER, NOW)
 
 
-@pytest.fixture(scope="module")
+@cache
 def session() -> Session:
     """Two walks of one strapping, the second slower and with an orthosis."""
     walks = (Walk(strides=13), Walk("walk 2", strides=13, speed_m_s=0.8))
@@ -49,17 +50,17 @@ def with_conditions(session: Session, **conditions: str) -> Session:
     return replace(session, recordings=recordings)
 
 
-@pytest.fixture(scope="module")
-def analysis(session: Session) -> Analysis:
-    return analysis_of(session)
+@cache
+def analysis() -> Analysis:
+    return analysis_of(session())
 
 
 @pytest.fixture
-def page(qtbot: QtBot, shared_page: ResultPage, analysis: Analysis, session: Session) -> ResultPage:
+def page(qtbot: QtBot, shared_page: ResultPage) -> ResultPage:
     page = shared_page
     page.set_room(1064, 672)
     page.set_has_visits(True)
-    page.show_visit(AnalysedVisit(session, analysis))
+    page.show_visit(AnalysedVisit(session(), analysis()))
     page.resize(1064, 672)
     show(page, "walk 1")
     page.view.choose(ANSWER)
@@ -81,17 +82,17 @@ def offered(page: ResultPage) -> list[str]:
     return [page.thin.itemText(row) for row in range(page.thin.count())]
 
 
-def return_to(page: ResultPage, session: Session, *analyses: Analysis, is_read: bool = True) -> list[WalkedVisit]:
+def return_to(page: ResultPage, *analyses: Analysis, is_read: bool = True) -> list[WalkedVisit]:
     """Show the last of three visits with these analyses, each of the same two walks."""
     walked = [
-        WalkedVisit(str(day), one, session.recordings, day) for day, one in zip(VISITS, analyses[-3:], strict=False)
+        WalkedVisit(str(day), one, session().recordings, day) for day, one in zip(VISITS, analyses[-3:], strict=False)
     ]
     course = tuple(
         CourseVisit(UUID(int=number), one.day, course_of(one.analysis, one.recordings))
         for number, one in enumerate(walked)
         if one.day is not None
     )
-    page.show_visit(AnalysedVisit(session, analyses[-1]), course=course)
+    page.show_visit(AnalysedVisit(session(), analyses[-1]), course=course)
     show(page, "walk 1")
     if is_read:
         page.show_visits(visits_by_condition(walked), conditions_in_words(walked))
@@ -114,37 +115,31 @@ def test_at_a_first_visit_another_walk_is_offered_and_nothing_is_drawn(page: Res
     assert offered(page) == ["A shoes", "No thin line"]
 
 
-def test_a_first_visit_of_one_walk_has_no_choice_of_a_thin_line(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    alone = tuple(one for one in analysis.recordings if one.name != "walk 2")
-    page.show_visit(AnalysedVisit(session, replace(analysis, recordings=alone)))
+def test_a_first_visit_of_one_walk_has_no_choice_of_a_thin_line(page: ResultPage) -> None:
+    alone = tuple(one for one in analysis().recordings if one.name != "walk 2")
+    page.show_visit(AnalysedVisit(session(), replace(analysis(), recordings=alone)))
     assert not page.thin.isVisible()
     QTest.keyClick(page.legs, Qt.Key.Key_T)
     assert page.thin.currentData() is ThinLine.NOTHING
     assert thin_curves(page) == {}
 
 
-def test_the_last_visit_is_drawn_unless_the_headline_is_of_another(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    less = with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -25.0)
-    return_to(page, session, analysis, analysis, analysis)
+def test_the_last_visit_is_drawn_unless_the_headline_is_of_another(page: ResultPage) -> None:
+    less = with_more(analysis(), Side.LEFT, "knee_stance_to_swing_rad", -25.0)
+    return_to(page, analysis(), analysis(), analysis())
     assert offered(page) == ["Last visit, 1 Sep", "First visit, 1 Jul", "B AFO", "No thin line"]
     assert page.thin.currentData() is ThinLine.LAST_VISIT
-    return_to(page, session, less, analysis, analysis)
+    return_to(page, less, analysis(), analysis())
     assert "since 1 Jul" in page.headline.text
     assert page.thin.currentData() is ThinLine.FIRST_VISIT
-    return_to(page, session, less, less, analysis)
+    return_to(page, less, less, analysis())
     assert "since 1 Sep" in page.headline.text
     assert page.thin.currentData() is ThinLine.LAST_VISIT
     assert set(thin_curves(page)) == set(Side)  # nobody is affected
 
 
-def test_the_cursor_stays_where_somebody_put_it_when_the_thin_line_changes(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    return_to(page, session, analysis, analysis, analysis)
+def test_the_cursor_stays_where_somebody_put_it_when_the_thin_line_changes(page: ResultPage) -> None:
+    return_to(page, analysis(), analysis(), analysis())
     page.legs.show_percent(20.0)
     choose(page, ThinLine.FIRST_VISIT)
     choose(page, ThinLine.NOTHING)
@@ -154,22 +149,20 @@ def test_the_cursor_stays_where_somebody_put_it_when_the_thin_line_changes(
     assert page.legs.percent != 20.0
 
 
-def test_what_somebody_chose_stays_when_another_walk_is_shown(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    return_to(page, session, analysis, analysis, analysis)
+def test_what_somebody_chose_stays_when_another_walk_is_shown(page: ResultPage) -> None:
+    return_to(page, analysis(), analysis(), analysis())
     choose(page, ThinLine.FIRST_VISIT)
     show(page, "walk 2")
     assert page.thin.currentData() is ThinLine.FIRST_VISIT
     choose(page, ThinLine.NOTHING)
     show(page, "walk 1")
     assert page.thin.currentData() is ThinLine.NOTHING
-    return_to(page, session, analysis, analysis, analysis)  # another session: nobody chose there
+    return_to(page, analysis(), analysis(), analysis())  # another session: nobody chose there
     assert page.thin.currentData() is ThinLine.LAST_VISIT
 
 
-def test_t_takes_the_thin_line_away_and_brings_it_back(page: ResultPage, analysis: Analysis, session: Session) -> None:
-    return_to(page, session, analysis, analysis, analysis)
+def test_t_takes_the_thin_line_away_and_brings_it_back(page: ResultPage) -> None:
+    return_to(page, analysis(), analysis(), analysis())
     choose(page, ThinLine.FIRST_VISIT)
     drawn = thin_curves(page)
     QTest.keyClick(page.legs, Qt.Key.Key_T)
@@ -180,8 +173,8 @@ def test_t_takes_the_thin_line_away_and_brings_it_back(page: ResultPage, analysi
     assert set(thin_curves(page)) == set(drawn)
 
 
-def test_with_the_line_go_its_legs(page: ResultPage, analysis: Analysis, session: Session) -> None:
-    return_to(page, session, analysis, analysis, analysis)
+def test_with_the_line_go_its_legs(page: ResultPage) -> None:
+    return_to(page, analysis(), analysis(), analysis())
     assert set(page.legs.picture.thin) == set(Side)
     for bend in page.legs.picture.thin.values():
         np.testing.assert_allclose(bend.knee_deg, 0.0, atol=1e-9)  # as it was then
@@ -189,16 +182,16 @@ def test_with_the_line_go_its_legs(page: ResultPage, analysis: Analysis, session
     assert page.legs.picture.thin == {}
 
 
-def test_the_affected_leg_alone_has_a_thin_line(page: ResultPage, analysis: Analysis, session: Session) -> None:
-    affected = replace(analysis, affected_side=Side.LEFT)
-    return_to(page, session, affected, affected, affected)
+def test_the_affected_leg_alone_has_a_thin_line(page: ResultPage) -> None:
+    affected = replace(analysis(), affected_side=Side.LEFT)
+    return_to(page, affected, affected, affected)
     assert set(thin_curves(page)) == {Side.LEFT}
 
 
-def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
+def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage) -> None:
     chart = page.cycles.charts.knee.chart
     choose(page, "walk 2")
-    other = walks_alone(analysis, session.recordings)["walk 2"]
+    other = walks_alone(analysis(), session().recordings)["walk 2"]
     assert [curve.side for curve in chart.described.beside] == list(Side)
     for curve in chart.described.beside:
         assert np.allclose(curve.angle_deg, other.cycle(Joint(f"{curve.side}_knee")).mean)
@@ -227,11 +220,9 @@ def test_the_thin_line_changes_no_sentence_tile_or_row(page: ResultPage) -> None
     assert stated() == before
 
 
-def test_a_long_name_of_a_walk_leaves_the_page_as_narrow_as_it_was(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    long = with_conditions(session, walk_1="shoes", walk_2="AFO with a carbon spring and a wedge of eight degrees")
-    page.show_visit(AnalysedVisit(long, analysis))
+def test_a_long_name_of_a_walk_leaves_the_page_as_narrow_as_it_was(page: ResultPage) -> None:
+    long = with_conditions(session(), walk_1="shoes", walk_2="AFO with a carbon spring and a wedge of eight degrees")
+    page.show_visit(AnalysedVisit(long, analysis()))
     show(page, "walk 1")
     choose(page, "walk 2")
     settle()
@@ -239,11 +230,9 @@ def test_a_long_name_of_a_walk_leaves_the_page_as_narrow_as_it_was(
     assert page.cycles.charts.knee.key.words.thin.startswith("B AFO")
 
 
-def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
-    page.show_visit(AnalysedVisit(session, gated))
+def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(page: ResultPage) -> None:
+    gated = recalibrated(analysis(), [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
+    page.show_visit(AnalysedVisit(session(), gated))
     show(page, "walk 1")
     choose(page, "walk 2")
     _, ankle = page.cycles.charts.frames
@@ -251,16 +240,14 @@ def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(
     assert words_beside(page) == ["L: not reported in B AFO.", ""]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
     assert set(page.legs.picture.thin) == {Side.RIGHT}
-    alone = walks_alone(gated, session.recordings)
+    alone = walks_alone(gated, session().recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
     assert not any(row.is_reported for row in found.rows if row.measure.kind == "knee" and row.side is Side.LEFT)
 
 
-def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_stated(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    other = recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.GONIOMETER)
-    return_to(page, session, analysis, other, analysis)
+def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_stated(page: ResultPage) -> None:
+    other = recalibrated(analysis(), [Joint.LEFT_KNEE], zero=ZeroKind.GONIOMETER)
+    return_to(page, analysis(), other, analysis())
     assert page.thin.currentData() is ThinLine.LAST_VISIT
     knee, ankle = words_beside(page)
     assert knee == "No common standing reference: compare range of motion and curve shape, not absolute angles."
@@ -271,11 +258,9 @@ def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_stat
     assert set(page.legs.picture.thin) == {Side.RIGHT}  # the left knee cannot be laid beside itself
 
 
-def test_earlier_visits_are_asked_for_once_and_come_when_they_are_read(
-    qtbot: QtBot, page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_earlier_visits_are_asked_for_once_and_come_when_they_are_read(qtbot: QtBot, page: ResultPage) -> None:
     with qtbot.waitSignal(page.compare.visits_requested):
-        walked = return_to(page, session, analysis, analysis, analysis, is_read=False)
+        walked = return_to(page, analysis(), analysis(), analysis(), is_read=False)
     assert (thin_curves(page), words_beside(page)) == ({}, ["", ""])  # nobody waits for them
     with qtbot.assertNotEmitted(page.compare.visits_requested):
         choose(page, ThinLine.NOTHING)
@@ -284,18 +269,16 @@ def test_earlier_visits_are_asked_for_once_and_come_when_they_are_read(
     assert set(thin_curves(page)) == set(Side)
 
 
-def test_a_visit_is_compared_by_its_condition_and_by_the_error_between_visits(
-    analysis: Analysis, session: Session
-) -> None:
-    older = with_conditions(session, walk_1="AFO", walk_2="shoes")
+def test_a_visit_is_compared_by_its_condition_and_by_the_error_between_visits() -> None:
+    older = with_conditions(session(), walk_1="AFO", walk_2="shoes")
     visits = visits_by_condition(
         [
-            WalkedVisit("2026-05-01", analysis, session.recordings),
-            WalkedVisit("2026-06-20", analysis, older.recordings),
-            WalkedVisit("2026-11-14", analysis, session.recordings),
+            WalkedVisit("2026-05-01", analysis(), session().recordings),
+            WalkedVisit("2026-06-20", analysis(), older.recordings),
+            WalkedVisit("2026-11-14", analysis(), session().recordings),
         ]
     )
-    shown = walks_alone(analysis, session.recordings)["walk 1"]
+    shown = walks_alone(analysis(), session().recordings)["walk 1"]
     for is_first, name in ((False, "walk 2"), (True, "walk 1")):  # what was walked in shoes then
         found = beside_visit(shown, "shoes", visits, is_first=is_first, is_simulated=True)
         assert found is not None
@@ -304,34 +287,30 @@ def test_a_visit_is_compared_by_its_condition_and_by_the_error_between_visits(
     assert beside_visit(shown, "stick", visits, is_first=False, is_simulated=True) is None
 
 
-def test_an_earlier_visit_without_this_curve_is_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
-    walked = return_to(page, session, analysis, analysis, analysis, is_read=False)
-    older = with_conditions(session, walk_1="stick", walk_2="AFO")
+def test_an_earlier_visit_without_this_curve_is_named(page: ResultPage) -> None:
+    walked = return_to(page, analysis(), analysis(), analysis(), is_read=False)
+    older = with_conditions(session(), walk_1="stick", walk_2="AFO")
     changed = [WalkedVisit(one.name, one.analysis, older.recordings, one.day, one.agreed) for one in walked[:-1]]
     page.show_visits(visits_by_condition([*changed, walked[-1]]), conditions_in_words(walked))
     assert words_beside(page) == ["The earlier visit has no curve in this condition."] * 2
     assert thin_curves(page) == {}
 
 
-def test_a_leg_that_the_other_walk_has_not_measured_is_named(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
-    walk = next(one for one in analysis.recordings if one.name == "walk 2")
+def test_a_leg_that_the_other_walk_has_not_measured_is_named(page: ResultPage) -> None:
+    walk = next(one for one in analysis().recordings if one.name == "walk 2")
     gait = walk.gait[Side.LEFT]
     cycles = dict(gait.cycles)
     del cycles[Joint.LEFT_KNEE]
     bare = replace(walk, gait={**walk.gait, Side.LEFT: replace(gait, cycles=cycles)})
-    recordings = tuple(bare if one is walk else one for one in analysis.recordings)
-    page.show_visit(AnalysedVisit(session, replace(analysis, recordings=recordings)))
+    recordings = tuple(bare if one is walk else one for one in analysis().recordings)
+    page.show_visit(AnalysedVisit(session(), replace(analysis(), recordings=recordings)))
     show(page, "walk 1")
     choose(page, "walk 2")
     assert words_beside(page) == ["L: not measured in B AFO.", ""]
 
 
-def test_changes_on_the_curves_of_a_bench_are_of_the_movement_that_differs_most(
-    analysis: Analysis, session: Session
-) -> None:
-    alone = walks_alone(analysis, session.recordings)
+def test_changes_on_the_curves_of_a_bench_are_of_the_movement_that_differs_most() -> None:
+    alone = walks_alone(analysis(), session().recordings)
     rows = marked_rows(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True), Side.LEFT)
     assert rows
     marked = [change_on_curve(row, row.side.letter, row.against.name) for row in rows.values()]
