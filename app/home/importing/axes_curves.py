@@ -66,7 +66,7 @@ class AxesCurves(Painted):
         painter.setPen(theme.pen(theme.colours.line, 1))
         painter.drawRect(room)
         if self._low < 0.0 < self._high:
-            y = self._y(0.0)
+            y = float(self._y(np.zeros(())))
             painter.drawLine(QPointF(room.left(), y), QPointF(room.right(), y))
         for axis, pen in enumerate(self._pens):
             painter.setPen(pen)
@@ -113,7 +113,7 @@ class AxesCurves(Painted):
         each = px(KEY + 4 + 14 + 8)
         return QRectF(self.width() - (3 - axis) * each, 0, px(KEY), px(HEAD))
 
-    def _y(self, value: float) -> float:
+    def _y(self, value: FloatArray) -> FloatArray:
         room = self._room
         return room.bottom() - px(3) - (value - self._low) / (self._high - self._low) * (room.height() - px(6))
 
@@ -127,8 +127,8 @@ class AxesCurves(Painted):
         ends = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
         for start, end in zip(ends[::2], ends[1::2], strict=True):
             x = room.left() + time_s[start:end] / span_s * room.width()
-            points = [QPointF(float(a), self._y(float(b))) for a, b in zip(x, values[start:end], strict=True)]
-            painter.drawPolyline(QPolygonF(points))
+            points = zip(x.tolist(), self._y(values[start:end]).tolist(), strict=True)
+            painter.drawPolyline(QPolygonF([QPointF(*one) for one in points]))
 
 
 def _figure(value: float, form: str) -> str:
