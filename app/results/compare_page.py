@@ -111,6 +111,7 @@ class ComparePage(QWidget):
     ) -> None:
         """Show the walks of one session, `who` walked them; what was known of other visits is forgotten."""
         self._conditions, self._visits, self._every = tuple(parts), None, ()
+        self._is_reading = False  # what was asked for may have been refused
         self._analysis, self._who = analysis, who
         affected = analysis.affected_side
         self._affected, self._is_simulated = affected, analysis.is_simulated

@@ -269,6 +269,14 @@ def test_earlier_visits_are_asked_for_once_and_come_when_they_are_read(qtbot: Qt
     assert set(thin_curves(page)) == set(Side)
 
 
+def test_earlier_visits_that_never_came_are_asked_for_again_with_the_next_results(
+    qtbot: QtBot, page: ResultPage
+) -> None:
+    return_to(page, analysis(), analysis(), analysis(), is_read=False)  # and the library refused
+    with qtbot.waitSignal(page.compare.visits_requested):
+        return_to(page, analysis(), analysis(), analysis(), is_read=False)
+
+
 def test_a_visit_is_compared_by_its_condition_and_by_the_error_between_visits() -> None:
     older = with_conditions(session(), walk_1="AFO", walk_2="shoes")
     visits = visits_by_condition(
