@@ -203,7 +203,7 @@ def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[Co
                         value = spoken_value(lane.kind.column, value_in_words(point.value, lane))
                     stated.append(f"{_head(lane.kind, line)}: {value}")
     if visits[number].course is None:
-        stated = [tr("not calculated yet")]
+        stated = [capitalised(tr("not calculated yet"))]
     return f"{day_of(number, visits)}. {'. '.join(stated or [tr('no walk')])}."
 
 

@@ -69,6 +69,10 @@ BESIDE = {  # how one leg has less than the other, and more
         later("The {joint} plantarflexes {size} less at push-off than the {second}: {value} against {other}."),
         later("The {joint} plantarflexes {size} more at push-off than the {second}: {value} against {other}."),
     ),
+    "ankle_heel_rocker_deg": (
+        later("The {joint} plantarflexes {size} less in loading response than the {second}: {value} against {other}."),
+        later("The {joint} plantarflexes {size} more in loading response than the {second}: {value} against {other}."),
+    ),
     "ankle_rocker_deg": (
         later("The {joint} dorsiflexes {size} less in stance than the {second}: {value} against {other}."),
         later("The {joint} dorsiflexes {size} more in stance than the {second}: {value} against {other}."),

@@ -112,7 +112,7 @@ def lossy_message(counts: "Mapping[Site, SamplesReceived]") -> Message:
     """Say which sensors lose samples while they are recorded."""
     if not (what := lossy_sentence(counts)):
         return NOTHING
-    return what, tr("Recording continues. Move the receiver nearer to the patient, and keep it in sight.")
+    return what, tr("Recording continues. Move the receiver closer to the patient, and keep it in sight.")
 
 
 def loose_message(on_own_clocks: Sequence[str]) -> Message:

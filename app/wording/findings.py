@@ -121,7 +121,7 @@ SENTENCES = {
     ),
     "every_second_lost": (
         "Every second sample is missing ({lost_percent:.0f} % lost): {rate_hz:.1f} per second came, "
-        "{nominal_hz:.1f} were set. Check the sample rate of this sensor, move the receiver nearer, then record "
+        "{nominal_hz:.1f} were set. Check the sample rate of this sensor, move the receiver closer, then record "
         "again."
     ),
     "acc_in_g": (

@@ -8,7 +8,7 @@ one.
 import math
 
 from app.wording.body import name_of
-from app.wording.numbers import clock
+from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text, joined, later, short_figure, tr, tr_n, within_sentence
 from core.timed.found import DistanceSource, NotMeasured, NotValid, PartOfUpAndGo, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol, course_of
@@ -277,6 +277,7 @@ def tape_sentence(test: TimedTest) -> str:
     reported = tr("The sensors measured {own:.2f} m, {apart:+.2f} m compared with the tape ({tape:.2f} m)").format(
         own=test.sensor_distance_m, apart=apart_m, tape=test.distance_m
     )
+    reported = reported.replace("-", MINUS)
     if round(abs(share), 6) <= ALLOWED_PERCENT:
         return tr("{reported}; within the 3 % limit.").format(reported=reported)
     return tr("{reported}; beyond the 3 % limit. Check the position of the tape.").format(reported=reported)

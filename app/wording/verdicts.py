@@ -140,7 +140,7 @@ WORDS = {
     ),
     "every_second": GateWords(
         later("Every second sample of a sensor is missing: {value} of the samples arrived (limit {limit})."),
-        later("Check the sensor's sample rate, move the receiver nearer, then record again."),
+        later("Check the sensor's sample rate, move the receiver closer, then record again."),
     ),
     "events": GateWords(later("Stance is {value} of the gait cycle (limit {limit}). Gait events may be wrong.")),
     "distance": GateWords(later("Left and right stride length differ by {value} (limit {limit}).")),

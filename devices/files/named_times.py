@@ -160,7 +160,7 @@ def _checked_rate(table: NamedTable, time_s: FloatArray, reported_hz: float | No
             table.where,
             "the times in the file give {found} samples per second, expected {reported}",
             "Name the time column with its unit, such as time_ms, or correct the rate",
-            found=f"{found_hz:.4g}",
+            found=f"{found_hz:.4g}" if found_hz < 1e4 else f"{found_hz:.0f}",
             reported=f"{least:g} to {most:g}" if reported_hz is None else f"{reported_hz:g}",
         )
     return round(found_hz, 1)
