@@ -198,7 +198,12 @@ def continued(
 
 def steps_back(clock: FileClock, row: int, before: float, after: float) -> FileRefusedError:
     """The refusal of a clock that steps back at a row and goes on from there."""
-    return _steps_back(f"{clock.where}, {clock.place(row)}", clock.name, f"{before:.12g}", f"{after:.12g}")
+    return _steps_back(f"{clock.where}, {clock.place(row)}", clock.name, _written(before), _written(after))
+
+
+def _written(stamp: float) -> str:
+    """As the file has it: microseconds since 1970 too."""
+    return f"{stamp:.12g}" if abs(stamp) < 1e12 else f"{stamp:.0f}"
 
 
 def _steps_back(where: str, name: str, before: str, after: str) -> FileRefusedError:

@@ -38,7 +38,7 @@ RATE = re.compile(
     r"[^0-9\n]{0,14}(\d+(?:[.,]\d+)?)",
     re.IGNORECASE | re.ASCII,
 )
-NO_TABLE = "the file format is not recognised, and the file is no table of numbers"
+NO_TABLE = "the file format is not recognised, and the file is not a table of numbers"
 EXPORT_TABLE = "Leave this file out, or export the recording as a table with one row for each sample"
 
 

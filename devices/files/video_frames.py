@@ -53,7 +53,7 @@ def _is_encrypted(path: Path) -> bool:
 
 
 def _no_video(where: str) -> FileRefusedError:
-    return FileRefusedError(where, "this file is no video that can be read", "Choose an MP4, MOV, MKV or WebM file")
+    return FileRefusedError(where, "this file cannot be read as a video", "Choose an MP4, MOV, MKV or WebM file")
 
 
 def _too_long(where: str) -> FileRefusedError:

@@ -554,7 +554,7 @@ def test_an_import_shows_the_program_by_the_content(tmp_path: Path, capsys: pyte
     strange = tmp_path / "taxes.csv"
     strange.write_text("year,amount\n2026,1\n")
     assert main(["import", str(strange), *where]) == 2
-    assert "taxes.csv: the file format is not recognised, and the file is no table of numbers" in refusal(capsys)
+    assert "taxes.csv: the file format is not recognised, and the file is not a table of numbers" in refusal(capsys)
     assert len(files_in(tmp_path / "session")) == 2
 
 

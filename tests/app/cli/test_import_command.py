@@ -69,7 +69,7 @@ def test_a_preview_states_why_a_table_cannot_be_read(tmp_path: Path, capsys: pyt
     assert main(["import", str(path), "--preview", *BY_HAND, "--acc-unit", "g"]) == 0
     assert "is labelled g, but its median of" in capsys.readouterr().out
     assert main(["import", str(write(tmp_path / "a.txt", ["Dear all"])), "--preview"]) == 0
-    assert "the file is no table of numbers" in capsys.readouterr().out
+    assert "the file is not a table of numbers" in capsys.readouterr().out
 
 
 def test_without_positions_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

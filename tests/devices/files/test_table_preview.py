@@ -147,7 +147,7 @@ def test_a_wrong_choice_shows_why_it_cannot_be(tmp_path: Path) -> None:
     assert '"0.000000" in column "t" is not a time' in refusal(time_unit="clock")
     assert "neither acceleration nor angular rates are chosen" in refusal(acc=(NONE,), gyr=(NONE,))
     assert "in column t is not a number" in refusal(decimal=",")
-    assert "the file is no table of numbers" in refusal(separator=";")
+    assert "the file is not a table of numbers" in refusal(separator=";")
 
 
 def test_a_sensor_that_cannot_be_read_beside_one_that_can_is_named(tmp_path: Path) -> None:

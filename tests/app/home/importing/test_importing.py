@@ -148,7 +148,7 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
     stated = shown(page)
     assert (
-        "notes.txt: the file format is not recognised, and the file is no table of numbers. Leave this file out"
+        "notes.txt: the file format is not recognised, and the file is not a table of numbers. Leave this file out"
         in stated
     )
     assert "mt.txt: the sample rate is missing." in stated
@@ -163,7 +163,7 @@ def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Hom
     (tmp_path / "notes.txt").write_text("to be left out\n")
     home.importing.read([tmp_path / "notes.txt"])
     qtbot.waitUntil(home.banner.isVisible)
-    assert home.banner.text.startswith("The file format is not recognised, and the file is no table of numbers.")
+    assert home.banner.text.startswith("The file format is not recognised, and the file is not a table of numbers.")
     assert home.banner.text.endswith("Where: notes.txt.")
     assert home.current is home.page
 
