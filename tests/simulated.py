@@ -25,7 +25,16 @@ from core.body import Site
 from core.results import Analysis
 from core.session import Session
 from core.signal.filters import FILTER
-from devices.simulation.walker import DEMONSTRATION, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import (
+    DEMONSTRATION,
+    FreeMotion,
+    SimulatedSession,
+    Standing,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
+from devices.simulation.walker_body import Tissue
 
 ROOT = Path(__file__).parents[1]
 T = TypeVar("T")
@@ -34,6 +43,23 @@ OTHERS = 2
 # Who walked, for tests that need no more of anybody; whoever needs more states it where it asks.
 LONG_WALK = DEMONSTRATION
 """Fourteen strides after free motion, with tissue: enough for a spread, a summary, a report."""
+SLOW_WALK = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95)))
+"""The same slower than most healthy people: another reference, and speed is worth a word."""
+TWO_WALKS = replace(DEMONSTRATION, recordings=(*SLOW_WALK.recordings, Walk("walk 2", strides=13)))
+"""A slow walk and a usual one, to choose and to compare."""
+THREE_WALKS = replace(
+    DEMONSTRATION,
+    tissue=Tissue.RIGID,
+    recordings=(
+        *(Standing(), FreeMotion(), Walk(strides=13), Walk("walk 2", strides=13)),
+        Walk("walk 3", strides=13, speed_m_s=0.9),
+    ),
+)
+"""Two alike and a slower one on rigid sensors, so that no strap seems to slip: conditions and their errors."""
+EXACT_WALK = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
+"""Twelve strides on rigid sensors: files are held to what they were made of."""
+SHORT_VISIT = WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=6)))
+"""Standing, free motion and six strides, soon analysed: what is stored, exported and read back."""
 SHORT_WALK = WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))
 """Five strides of both legs, soon analysed: every joint has angles, and none a spread."""
 WALK_OF_ONE_LEG = replace(

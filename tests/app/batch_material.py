@@ -10,8 +10,7 @@ from core.body import Site
 from core.samples import ImuBlock
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
-from tests.simulated import session_of
+from tests.simulated import SHORT_VISIT, session_of
 
 SECONDS, RATE_HZ = 4, 50
 NOBODY = Patient()
@@ -29,7 +28,7 @@ def swinging_session(seed: int, patient: Patient = NOBODY, notes: str = "") -> S
 @cache
 def walked_session() -> Session:
     """A patient on whom everything was typed that states who it is, with a walk of both legs."""
-    session = session_of(WalkerSettings(seed=3, recordings=(Standing(), FreeMotion(), Walk(strides=8))))
+    session = session_of(SHORT_VISIT)
     recordings = tuple(
         replace(one, condition="barefoot" if one.kind is RecordingKind.WALKING else "", note="Anna Muster limped")
         for one in session.recordings

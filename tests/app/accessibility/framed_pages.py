@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache, partial
 from typing import cast
 
@@ -41,12 +40,11 @@ from core.timed.found import TimedTest
 from core.timed.live import LiveReadout
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.diagnostics import diagnostics_of
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import visit_of
 from tests.app.idle_action import idle
 from tests.app.results.filled_pages import PAGES
 from tests.app.wizard.walking.bench_material import bench_visit
-from tests.simulated import analysis_of, session_of
+from tests.simulated import TWO_WALKS, analysis_of, session_of
 
 Make = Callable[[], QWidget]
 STEPS = ("Patient", "Sensors", "Stand still", "Free motion", "Walking", "Results", "Report")
@@ -58,8 +56,7 @@ OVER_TEN_METRES = TimedTest(
 @cache
 def analysed() -> tuple[Session, Analysis]:
     """Two walks of the simulated patient, under two conditions."""
-    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95), Walk("walk 2", strides=13))
-    session = session_of(replace(DEMONSTRATION, recordings=recordings))
+    session = session_of(TWO_WALKS)
     return session, analysis_of(session)
 
 

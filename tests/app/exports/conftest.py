@@ -9,20 +9,18 @@ from app.exports.exports import Format, export_from_folder
 from app.exports.result_folder import write_results
 from core.results import Analysis, RecordingAnalysis
 from core.session import RecordingKind, Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from devices.simulation.walker_truth import RecordingTruth
-from tests.simulated import analysis_of, session_of, simulation_of
+from tests.simulated import EXACT_WALK, analysis_of, session_of, simulation_of
 
 NAME = "Miller"
 OF_FIGURES = [Format.C3D, Format.FHIR, Format.MOT, Format.XLSX]
 Visit = tuple[Session, Analysis]
-SETTINGS = WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(), Walk(strides=12)))
 
 
 @pytest.fixture(scope="session")
 def visit() -> Visit:
     """A visit in which everything that can be typed holds a name."""
-    session = session_of(SETTINGS)
+    session = session_of(EXACT_WALK)
     recordings = tuple(
         replace(r, name=f"{r.name} {NAME}", folder=f"{r.folder}_{NAME}", note=NAME, condition="=barefoot")
         for r in session.recordings
@@ -47,7 +45,7 @@ def walk(visit: Visit) -> RecordingAnalysis:
 @pytest.fixture(scope="session")
 def truth() -> RecordingTruth:
     """What the walk of the visit was made of."""
-    return simulation_of(SETTINGS).truth.recordings["walk 1"]
+    return simulation_of(EXACT_WALK).truth.recordings["walk 1"]
 
 
 @pytest.fixture(scope="session")

@@ -13,9 +13,8 @@ import pytest
 
 from app.exports.csvw import METADATA
 from app.exports.result_folder import TAKEN, write_results
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.exports.written_tables import csv_rows
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SHORT_VISIT, analysis_of, session_of
 
 PARSED: Mapping[str, Callable[[str], object]] = {
     "number": float,
@@ -28,7 +27,7 @@ PARSED: Mapping[str, Callable[[str], object]] = {
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out")
-    session = session_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=5))))
+    session = session_of(SHORT_VISIT)
     write_results(session, analysis_of(session), folder)
     return folder
 

@@ -15,16 +15,15 @@ from core.body import Joint, Side
 from core.results import RecordingAnalysis
 from core.verdicts.model import Assessment, LegVerdicts, Verdict
 from core.verdicts.quantities import FITTING
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.exports.written_tables import csv_rows
-from tests.simulated import analysis_of, simulation_of
+from tests.simulated import SHORT_VISIT, analysis_of, simulation_of
 
 BAD = Assessment(Verdict.NOT_REPORTED)
 
 
 @pytest.fixture(scope="module")
 def walk() -> RecordingAnalysis:
-    made = simulation_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=6))))
+    made = simulation_of(SHORT_VISIT)
     return analysis_of(made.session).recordings[-1]
 
 

@@ -18,7 +18,7 @@ from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdict,
 from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import FreeMotion, Motion, Standing, Walk, WalkerSettings
 from tests.app.exports.written_tables import csv_rows
-from tests.simulated import analysis_of, session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 HALF_A_DIGIT = 0.51e-5  # files have five decimals
 WITH_PELVIS = WalkerSettings(
@@ -142,7 +142,7 @@ def test_a_frame_states_what_the_files_of_a_session_state(
 @pytest.fixture
 def doubted() -> Analysis:
     """A walk with each word of status, whose right straps slipped half way."""
-    found = analysis_of(session_of(WalkerSettings(seed=4, recordings=(Standing(), FreeMotion(), Walk()))))
+    found = analysis_of(session_of(LONG_WALK))
     walk = found.recordings[-1]
     legs = {Side.LEFT: LegVerdicts(READ, NOT_REPORTED), Side.RIGHT: LegVerdicts(NOT_REPORTED, CARE)}
     verdicts = Verdicts(DOUBTED, legs, between=NOT_MEASURED)

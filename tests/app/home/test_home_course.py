@@ -25,12 +25,10 @@ from app.system.progress import nobody
 from app.system.settings import Settings
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
-from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
 from core.session import Patient
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
-from tests.simulated import session_of
+from tests.simulated import WALK_OF_ONE_LEG, session_of
 
 
 @pytest.fixture(scope="module")
@@ -141,10 +139,7 @@ def reading(opened: OpenedLibrary) -> PatientReading:
 
 
 def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: OpenedLibrary) -> None:
-    sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
-    played = (Standing(duration_s=2.0), Walk(strides=8))
-    known = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
-    known = replace(known, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
+    known = replace(session_of(WALK_OF_ONE_LEG), patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
     session_id = import_session(opened, known, nobody).session_id
     now = day_and_time("2026-06-25T09:00:00")
     assert [visit.course for visit in reading(opened).visits(now)] == [None]

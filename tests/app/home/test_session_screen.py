@@ -41,9 +41,8 @@ from core.results import (
 )
 from core.samples import FloatArray
 from core.session import Patient, RecordingKind, Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.room import is_cut
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SLOW_WALK, analysis_of, session_of
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -409,8 +408,7 @@ def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
 @pytest.fixture(scope="module")
 def walked() -> AnalysedVisit:
     """A simulated session whose walk is long enough for a spread."""
-    settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
-    session = session_of(settings)
+    session = session_of(SLOW_WALK)
     return AnalysedVisit(session, analysis_of(session))
 
 

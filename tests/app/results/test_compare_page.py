@@ -45,21 +45,17 @@ from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import ErrorSource, Judgement, Mark
 from core.verdicts.sigmas import ComparisonKind
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
-from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.room import settle, words_cut
-from tests.simulated import analysis_of, session_of
+from tests.simulated import THREE_WALKS, analysis_of, session_of
 
 DIGITS = 1e-5
 
 
 @cache
 def session() -> Session:
-    """Three walks of two conditions; rigid sensors, so that no strap seems to slip."""
-    walks = (Walk(strides=13), Walk("walk 2", strides=13), Walk("walk 3", strides=13, speed_m_s=0.9))
-    played: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), *walks)
-    found = session_of(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played))
+    """Three walks of two conditions."""
+    found = session_of(THREE_WALKS)
     conditions = {"walk 1": "barefoot", "walk 2": "barefoot", "walk 3": "AFO"}
     return replace(
         found, recordings=tuple(replace(one, condition=conditions.get(one.name, "")) for one in found.recordings)

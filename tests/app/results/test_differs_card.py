@@ -18,17 +18,16 @@ from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
 from tests.app.reports.patient.test_what_stands_out import with_more
-from tests.simulated import analysis_of, session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 MINUS = "\N{MINUS SIGN}"
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13))))
+    return session_of(LONG_WALK)
 
 
 @pytest.fixture(scope="module")

@@ -24,11 +24,10 @@ from core.session import Session
 from core.verdicts.model import Verdict
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import raw_values
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.accessibility.accessible_tree import elements, wrong_hearing
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of, with_few_strides
 from tests.app.reports.patient.test_what_stands_out import with_more
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SLOW_WALK, analysis_of, session_of
 
 GROWN = AgeAndHeight(30, 1.70)
 WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
@@ -36,8 +35,7 @@ WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and
 
 @cache
 def session() -> Session:
-    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
-    return session_of(replace(DEMONSTRATION, recordings=recordings))
+    return session_of(SLOW_WALK)
 
 
 @pytest.fixture(scope="module")

@@ -18,16 +18,15 @@ from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out
 from core.results import Analysis
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.room import words_cut
-from tests.simulated import analysis_of, session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 Turned = list[tuple[str, StrideLine, bool]]
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return session_of(replace(DEMONSTRATION, recordings=(Standing(), Walk(strides=8))))
+    return session_of(LONG_WALK)
 
 
 @pytest.fixture(scope="module")

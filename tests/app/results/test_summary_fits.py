@@ -24,12 +24,11 @@ from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.session import Session
 from core.verdicts.norms import AgeAndHeight
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
 from tests.app.hip_visits import hip_visit
 from tests.app.reports.patient.test_what_stands_out import with_more
 from tests.app.room import settle, words_cut
-from tests.simulated import analysis_of, session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 # of the page in px of the design, and the size of everything
 ROOMS = {
@@ -43,8 +42,7 @@ DAYS = (datetime.date(2025, 7, 1), datetime.date(2025, 9, 23), datetime.date(202
 
 @cache
 def session() -> Session:
-    walk = Walk(strides=13, speed_m_s=1.15)
-    return session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), walk)))
+    return session_of(LONG_WALK)
 
 
 @cache

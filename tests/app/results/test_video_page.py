@@ -27,12 +27,11 @@ from core.results import RecordingAnalysis
 from core.verdicts.model import READ, GateReason, JointVerdicts, Verdict, assess
 from core.video.clip import Clip, Sync, SyncBy
 from core.video.moments import Moment, moments_s
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.accessibility.accessible_tree import complaints
 from tests.app.changed_analysis import recalibrated, visit_of
 from tests.app.drawn_clips import SURE, Jpegs, drawn_clip
 from tests.app.room import settle, words_cut
-from tests.simulated import analysis_of, session_of
+from tests.simulated import TWO_WALKS, analysis_of, session_of
 
 SMALL = (320, 180)
 ROOMS = {"1280 x 800": (1064, 672, 1.0), "960 x 600": (896, 480, 1.0), "1920 x 1200 at 200 %": (896, 480, 2.0)}
@@ -40,8 +39,7 @@ ROOMS = {"1280 x 800": (1064, 672, 1.0), "960 x 600": (896, 480, 1.0), "1920 x 1
 
 @cache
 def visit() -> AnalysedVisit:
-    walks = (Walk(strides=13, speed_m_s=1.15), Walk(strides=11, speed_m_s=0.95, name="walk 2"))
-    session = session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), *walks)))
+    session = session_of(TWO_WALKS)
     return visit_of(analysis_of(session), session)
 
 

@@ -33,8 +33,7 @@ from core.results import Analysis, JointAngle, Method, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock
 from core.session import Patient, Recording, RecordingKind, Session
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, Verdicts, assess
-from devices.simulation.walker import Standing, Walk, WalkerSettings
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SHORT_WALK, analysis_of, session_of
 
 
 def block(n: int, seed: int) -> ImuBlock:
@@ -276,7 +275,7 @@ def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
         write_log(*visit(), tmp_path / "missing" / "session.rrd")
 
 
-WALKED = session_of(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5))))
+WALKED = session_of(SHORT_WALK)
 
 
 @pytest.fixture(scope="module")

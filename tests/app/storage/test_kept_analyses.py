@@ -23,8 +23,7 @@ from core.results import Analysis
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.session import Patient, Recording, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk
-from tests.simulated import analysis_of, session_of
+from tests.simulated import WALK_OF_ONE_LEG, analysis_of, session_of
 
 SHANK = Site.LEFT_SHANK
 
@@ -32,9 +31,7 @@ SHANK = Site.LEFT_SHANK
 @pytest.fixture(scope="module")
 def session() -> Session:
     """A walk of one leg: short, for every bit of it is compared."""
-    sites = (Site.LEFT_THIGH, SHANK, Site.LEFT_FOOT)
-    played = (Standing(duration_s=2.0), Walk(strides=8))
-    simulated = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
+    simulated = session_of(WALK_OF_ONE_LEG)
     return replace(
         simulated,
         patient=Patient(code="DEMO-1", affected_side="left"),

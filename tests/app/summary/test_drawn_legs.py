@@ -10,15 +10,14 @@ from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind, Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SHORT_VISIT, analysis_of, session_of
 
 HEIGHT_M = 1.8
 
 
 @pytest.fixture(scope="module")
 def visit() -> tuple[Session, Analysis]:
-    session = session_of(WalkerSettings(seed=4, recordings=(Standing(), FreeMotion(), Walk(strides=5))))
+    session = session_of(SHORT_VISIT)
     session = replace(session, patient=replace(session.patient, height_m=HEIGHT_M))
     return session, analysis_of(session)
 

@@ -1,7 +1,5 @@
 """The legs of a mean stride: where they stand, and what is left out."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,14 +7,13 @@ from app.summary.mean_legs import ANKLE, HIP, KNEE, TOES, MeanLegs, mean_legs
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of
-from tests.simulated import analysis_of, session_of
+from tests.simulated import LONG_WALK, analysis_of, session_of
 
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return session_of(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13))))
+    return session_of(LONG_WALK)
 
 
 @pytest.fixture(scope="module")

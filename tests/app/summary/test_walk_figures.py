@@ -37,15 +37,13 @@ from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.session import Recording
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import both_sides
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides, with_used
-from tests.simulated import analysis_of, session_of
+from tests.simulated import SLOW_WALK, analysis_of, session_of
 
 
 @pytest.fixture(scope="module")
 def analysis() -> Analysis:
-    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
-    return analysis_of(session_of(replace(DEMONSTRATION, recordings=recordings)))
+    return analysis_of(session_of(SLOW_WALK))
 
 
 @pytest.fixture

@@ -25,17 +25,15 @@ from app.system.settings import Settings
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
-from tests.simulated import session_of
+from tests.simulated import SHORT_VISIT, session_of
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
 @pytest.fixture(scope="module")
 def walked() -> Session:
-    recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
-    return session_of(WalkerSettings(seed=5, recordings=recordings))
+    return session_of(SHORT_VISIT)
 
 
 @pytest.fixture

@@ -17,10 +17,9 @@ from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
 from tests.app.watchdog import Watchdog
-from tests.simulated import session_of
+from tests.simulated import SHORT_VISIT, session_of
 
 
 @pytest.fixture
@@ -151,8 +150,7 @@ def test_where_no_session_has_a_recording_no_table_is_made_and_the_page_states_w
 def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
     qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
-    session = session_of(WalkerSettings(seed=5, recordings=recordings))
+    session = session_of(SHORT_VISIT)
     kept: list[object] = []
 
     class Keeper(QObject):

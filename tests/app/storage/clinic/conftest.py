@@ -22,8 +22,7 @@ from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.progress import nobody
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
-from tests.simulated import session_of
+from tests.simulated import SHORT_VISIT, session_of
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -45,7 +44,7 @@ def database_url(postgres_url: str) -> Iterator[str]:
 @pytest.fixture(scope="session")
 def walked() -> Session:
     """A simulated patient who is, moves and walks."""
-    return session_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=6))))
+    return session_of(SHORT_VISIT)
 
 
 @pytest.fixture(scope="session")

@@ -17,10 +17,9 @@ from core.body import Joint, Side, Site
 from core.prosthesis import AmputationLevel, Prosthesis
 from core.session import Patient, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
 from tests.quick_library import copy_of, quick_library
-from tests.simulated import session_of
+from tests.simulated import WALK_OF_ONE_LEG, session_of
 
 SHOES = course((walked(), "shoes"))
 STICK = course((walked(), "shoes, stick"))
@@ -28,10 +27,8 @@ STICK = course((walked(), "shoes, stick"))
 
 @pytest.fixture(scope="module")
 def reported() -> Session:
-    """A walk of one leg, short, with a condition."""
-    sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
-    played = (Standing(duration_s=2.0), Walk(strides=8))
-    found = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
+    """A walk of one leg, with a condition."""
+    found = session_of(WALK_OF_ONE_LEG)
     recordings = (found.recordings[0], replace(found.recordings[1], condition="shoes"))
     return replace(found, recordings=recordings, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
 
@@ -158,4 +155,4 @@ def test_a_session_that_is_evaluated_gives_its_course(opened: OpenedLibrary, vis
     assert key == current_course_key(opened.library.sessions.get(visit.id))
     (condition,) = found.conditions
     assert condition.condition == "shoes"
-    assert 0 < condition.strides <= 8
+    assert 0 < condition.strides <= 12

@@ -27,9 +27,9 @@ from core.goals import Goal, GoalOf
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from devices.simulation.walker import Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
-from tests.simulated import session_of
+from tests.simulated import SHORT_VISIT, session_of
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 NAMES = [f"Kowalczyk-{number:03d}" for number in range(200)]
@@ -69,8 +69,7 @@ def in_and_out(opened: OpenedLibrary, session: Session) -> Session:
 @pytest.fixture(scope="module")
 def walked() -> Session:
     """The simulated patient: two of six sensors with orientation and magnetic field, gaps, odd keys and columns."""
-    recordings = (Standing(), FreeMotion(), Walk(strides=6))
-    session = session_of(WalkerSettings(seed=5, recordings=recordings))
+    session = session_of(SHORT_VISIT)
     rng = np.random.default_rng(5)
     changed = []
     for recording in session.recordings:

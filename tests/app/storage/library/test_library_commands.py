@@ -22,9 +22,8 @@ from app.storage.slots import Cost
 from app.storage.stored import Action, StoredRecording
 from app.system.progress import nobody
 from core.session import Recording, RecordingKind
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
-from tests.simulated import session_of
+from tests.simulated import SHORT_VISIT, session_of
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -127,8 +126,7 @@ def test_on_a_terminal_the_passphrase_is_asked_for_and_not_shown(
 def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
     opened: OpenedLibrary, tmp_path: Path, key: list[str]
 ) -> None:
-    recordings = (Standing(), FreeMotion(), Walk(strides=6))
-    session = session_of(WalkerSettings(seed=3, recordings=recordings))
+    session = session_of(SHORT_VISIT)
     imported = import_session(opened, session, nobody, room=Room(start_bytes=0, kept_bytes=0))
     write_folder(opened, imported.session_id, tmp_path / "folder", {}, is_identified=True)
     by_folder, by_library = tmp_path / "one", tmp_path / "two"
