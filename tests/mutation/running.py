@@ -46,6 +46,7 @@ PRELOADED = (  # so that no mutant waits for them; the project itself is importe
     *("sqlcipher3", "cryptography.hazmat.primitives.ciphers.aead", "serial", "typst", "rerun"),
 )
 START_S, SLOWER = 20.0, 4.0  # a mutant may take this and so many times what its tests took
+PART = ("--snapshot-warn-unused",)  # of the tests: tables of the others are no failure
 
 
 class Fate(StrEnum):
@@ -187,7 +188,8 @@ class Tree:
     def check(self, tests: Sequence[str]) -> None:
         """See that all tests are there: a name that is not would look like a failure."""
         (self._place / "wanted.txt").write_text("\n".join(tests), encoding="utf-8")
-        command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", "@wanted.txt"]
+        command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider"]
+        command += [*PART, "@wanted.txt"]
         found = subprocess.run(
             command, cwd=self._place, env=self._environment, capture_output=True, text=True, check=False
         )
@@ -242,7 +244,7 @@ class Tree:
                 del sys.modules[name]
             sys.path[:] = [str(self._place), *(p for p in sys.path if p and Path(p).resolve() != self._root)]
             sys.dont_write_bytecode = True
-            code = int(pytest.main(["-x", "-q", "--tb=no", "-p", "no:cacheprovider", "@wanted.txt"]))
+            code = int(pytest.main(["-x", "-q", "--tb=no", "-p", "no:cacheprovider", *PART, "@wanted.txt"]))
             sys.stdout.flush()
         finally:
             os._exit(code)
