@@ -72,7 +72,7 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     assert step.note == "Recording A Alignment A"
     assert step.cannot_leave
     qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5)
-    assert set(step.page.live.knees) == set(step.page.live.ankles)
+    qtbot.waitUntil(lambda: set(step.page.live.knees) == set(step.page.live.ankles))
     assert step.page.live.cadence_steps_min > 60
     stop(qtbot, step, visit)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
