@@ -1,8 +1,7 @@
 """What is kept of a visit for its patient's course: it holds as long as all that it came of is as it was."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,7 +17,7 @@ from core.prosthesis import AmputationLevel, Prosthesis
 from core.session import Patient, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.course_material import course, walked
-from tests.quick_library import copy_of, quick_library
+from tests.quick_library import quick_library
 from tests.simulated import WALK_OF_ONE_LEG, session_of
 
 SHOES = course((walked(), "shoes"))
@@ -34,19 +33,12 @@ def reported() -> Session:
 
 
 @pytest.fixture(scope="module")
-def with_visit(tmp_path_factory: pytest.TempPathFactory, reported: Session) -> OpenedLibrary:
+def untouched(tmp_path_factory: pytest.TempPathFactory, reported: Session) -> OpenedLibrary:
     """A library that holds this walk, closed."""
     made = quick_library(tmp_path_factory.mktemp("courses"))
     import_session(made, reported, nobody)
     made.library.close()
     return made
-
-
-@pytest.fixture
-def opened(with_visit: OpenedLibrary, tmp_path: Path) -> Iterator[OpenedLibrary]:
-    """The same library, in a folder of the test's own."""
-    with copy_of(with_visit, tmp_path / "library") as opened:
-        yield opened
 
 
 @pytest.fixture
