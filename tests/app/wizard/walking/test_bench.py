@@ -31,6 +31,7 @@ from core.results import SideGait
 from core.session import Recording, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.room import words_cut
+from tests.app.shared_page import shared
 from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit, recording, state_of
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
@@ -429,10 +430,7 @@ def page_of(qtbot: QtBot, bench: Bench, width: int, height: int) -> WalkingPage:
 def one_page(qapp: QApplication) -> Iterator[tuple[ChangeEntry, WalkingPage]]:
     """Made once, and what is entered on it."""
     entry = ChangeEntry()
-    page = WalkingPage(entry)
-    yield entry, page
-    page.close()
-    page.deleteLater()
+    yield from ((entry, page) for page in shared(WalkingPage(entry)))
 
 
 @pytest.fixture

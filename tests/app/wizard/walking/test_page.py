@@ -20,6 +20,7 @@ from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.body import Joint, Side
 from core.gait.phases import Phase
 from tests.app.room import words_cut
+from tests.app.shared_page import shared
 
 KEPT = WalkRow("1", "A", "Barefoot", WalkState.KEPT, 18)
 DISCARDED = WalkRow("2", "B", "Shoes", WalkState.DISCARDED, 17)
@@ -32,10 +33,7 @@ LABELS = ("Barefoot", "Shoes", "AFO")
 @pytest.fixture(scope="module")
 def one_page(qapp: QApplication) -> Iterator[WalkingPage]:
     """Made once: that takes longer than most tests of it."""
-    page = WalkingPage()
-    yield page
-    page.close()
-    page.deleteLater()
+    yield from shared(WalkingPage())
 
 
 @pytest.fixture
