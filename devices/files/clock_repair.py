@@ -16,7 +16,7 @@ import numpy as np
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray
 from devices.files.orientation_rates import Numbers
-from devices.files.refusal import FileRefusedError
+from devices.files.refusal import FileRefusedError, plain
 from devices.files.table_header import CORRECT_IT
 from devices.files.tables import Table
 
@@ -198,12 +198,7 @@ def continued(
 
 def steps_back(clock: FileClock, row: int, before: float, after: float) -> FileRefusedError:
     """The refusal of a clock that steps back at a row and goes on from there."""
-    return _steps_back(f"{clock.where}, {clock.place(row)}", clock.name, _written(before), _written(after))
-
-
-def _written(stamp: float) -> str:
-    """As the file has it: microseconds since 1970 too."""
-    return f"{stamp:.12g}" if abs(stamp) < 1e12 else f"{stamp:.0f}"
+    return _steps_back(f"{clock.where}, {clock.place(row)}", clock.name, plain(before), plain(after))
 
 
 def _steps_back(where: str, name: str, before: str, after: str) -> FileRefusedError:

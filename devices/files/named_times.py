@@ -12,7 +12,7 @@ from core.samples import BoolArray, FloatArray
 from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.column_names import SECONDS, Quantity, SensorColumns, meaning_of, unit_of
 from devices.files.named_table import NamedTable
-from devices.files.refusal import FileRefusedError, quoted
+from devices.files.refusal import FileRefusedError, plain, quoted
 from devices.files.straight_times import LATE_S, straight_times
 from devices.files.table_choices import COUNT
 
@@ -160,7 +160,7 @@ def _checked_rate(table: NamedTable, time_s: FloatArray, reported_hz: float | No
             table.where,
             "the times in the file give {found} samples per second, expected {reported}",
             "Name the time column with its unit, such as time_ms, or correct the rate",
-            found=f"{found_hz:.4g}" if found_hz < 1e4 else f"{found_hz:.0f}",
+            found=plain(found_hz, 4),
             reported=f"{least:g} to {most:g}" if reported_hz is None else f"{reported_hz:g}",
         )
     return round(found_hz, 1)

@@ -28,6 +28,11 @@ def one_line(text: str) -> str:
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
+def plain(value: float, digits: int = 12) -> str:
+    """A number without an exponent: so many digits of it, and all that are before its point."""
+    return f"{value:.{digits}g}" if abs(value) < 10.0**digits else f"{value:.0f}"
+
+
 def quoted(value: object, longest: int = 40) -> str:
     """`value` as it can be shown inside a sentence; the end of a long text is left off."""
     text = one_line(str(value))

@@ -26,7 +26,7 @@ from core.samples import FloatArray, ImuBlock, SensorInfo
 from devices.drivers.shimmer3 import CALIBRATION_SIZE, TICK_HZ, TURN, calibrating
 from devices.files.clock_repair import FileClock, repaired, without_turns
 from devices.files.magnitudes import check_magnitudes
-from devices.files.refusal import FileRefusedError
+from devices.files.refusal import FileRefusedError, plain
 from devices.files.trial import ImportedSensor
 
 HEAD, BLOCK, STAMP = 256, 512, 9  # bytes
@@ -189,8 +189,8 @@ def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: in
             name,
             "the times in the file give {found} samples per second, expected {reported}",
             "Synchronise the sensors again in Consensys, then record again",
-            found=f"{TICK_HZ / (period - slope):.4g}",
-            reported=f"{TICK_HZ / period:.4g}",
+            found=plain(TICK_HZ / (period - slope), 4),
+            reported=plain(TICK_HZ / period, 4),
         )
     return np.asarray(np.polyval(line, np.arange(count)))
 

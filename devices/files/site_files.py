@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock
-from devices.files.refusal import FileRefusedError
+from devices.files.refusal import FileRefusedError, plain
 from devices.files.table_header import CORRECT_IT
 from devices.files.tables import Table, read_csv, read_parquet
 
@@ -188,8 +188,8 @@ def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:
             f"{where}, {table.place(row)}",
             "the clock goes back from {before} s to {after} s",
             "Split the recording there, or export it again",
-            before=f"{time_s[row - 1]:.9g}",
-            after=f"{time_s[row]:.9g}",
+            before=plain(float(time_s[row - 1])),
+            after=plain(float(time_s[row])),
         )
     is_new[1:] = step_s > 0
     return is_new

@@ -23,7 +23,7 @@ from devices.files.column_names import XYZ, listed, sensor_columns
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable
 from devices.files.own_clocks import from_zero
-from devices.files.refusal import FileRefusedError
+from devices.files.refusal import FileRefusedError, plain
 from devices.files.straight_times import LATE_S, StraightTimes, lasting_step_back, straight_times
 from devices.files.trial import ImportedSensor, ImportedTrial
 from devices.files.xdf_streams import SIGNATURE, XdfStream, read_xdf
@@ -175,7 +175,7 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
             f"{clock.where}, {clock.place(0).partition(',')[0]}",
             "the times in the file give {found} samples per second, expected {reported}",
             SEND_RATE,
-            found=f"{straight.rate_hz:.4g}",
+            found=plain(straight.rate_hz, 4),
             reported=f"{rate_hz:g}",
         )
     return straight

@@ -66,7 +66,7 @@ class AxesCurves(Painted):
         painter.setPen(theme.pen(theme.colours.line, 1))
         painter.drawRect(room)
         if self._low < 0.0 < self._high:
-            y = float(self._y(np.zeros(())))
+            (y,) = self._y(np.zeros(1)).tolist()
             painter.drawLine(QPointF(room.left(), y), QPointF(room.right(), y))
         for axis, pen in enumerate(self._pens):
             painter.setPen(pen)

@@ -217,6 +217,7 @@ WRONG_TEXTS: dict[str, str | bytes] = {
     "a column too few": table("0,1,1,1,1,1", columns=COLUMNS.replace("acc_y_m_s2,", "")),
     "a column twice": table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")),
     "the clock goes back": table("0,1,1,1,1,1,1", "1,1,1,1,1,1,1", "0.5,1,1,1,1,1,1"),
+    "the clock of 1970 goes back": table("1700000000.5,1,1,1,1,1,1", "1700000000.25,1,1,1,1,1,1"),
     "the clock goes back, empty lines": table("0,1,1,1,1,1,1", "", "1,1,1,1,1,1,1", "", "0.5,1,1,1,1,1,1"),
     "a word in a cell": table("0,1,1,1,1,1,1", "1,1,x1,1,1,1,1"),
     "a hexadecimal number": table("0,1,1,1,1,1,1", "1,1,0x10,1,1,1,1"),
